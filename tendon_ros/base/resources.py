@@ -64,6 +64,6 @@ def config_path(relative: str | Path) -> Path:
         return path
     folder = next(parent for parent in path.parents if parent.is_dir())
     raise ResourceError(
-        f'{relative}: not in {root}; {folder.relative_to(root)} has '
+        f'{path}: does not exist; {folder} has '
         f'{listed(entry.name for entry in folder.iterdir())}'
     )

@@ -1,0 +1,50 @@
+# Every target sets up what it needs: .venv, once, and again when setup.py changes.
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+PY := .venv/bin/python
+READY := .venv/.ready
+EXECUTABLES := tendon simulator estimator trajectory recorder
+
+# Messages stay on this machine, and a field of the wrong type is an error instead of garbage.
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+export ROS_PYTHON_CHECK_FIELDS := 1
+
+.PHONY: help setup test lint demo bench colcon clean
+
+help:  ## say what there is
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 18
+
+$(READY): setup.py setup.cfg scripts/setup_venv
+	@scripts/setup_venv
+	@touch $@
+
+setup: $(READY)  ## make .venv and install everything into it
+
+lint: $(READY)  ## style, types and import walls
+	@echo '== ruff'; $(PY) -m ruff check .
+	@$(PY) -m ruff format --check .
+	@echo '== mypy'; $(PY) -m mypy
+	@echo '== import-linter'; .venv/bin/lint-imports --no-timing
+
+test: lint  ## lint, then the tests; ARGS='-k bags' goes to pytest
+	@echo '== pytest'; $(PY) -m pytest $(ARGS)
+
+demo: $(READY)  ## the paper's experiment, live, into out/demo
+	@.venv/bin/tendon demo --out out/demo
+
+bench: $(READY)  ## the kernel's speed against C, scipy and others
+	@$(PY) -m bench $(ARGS)
+
+colcon: $(READY)  ## build into install/ with colcon and start what ros2 run starts
+	@rm -rf build install log
+	@$(PY) -m colcon build --base-paths . --packages-select tendon_ros
+	@set +u; . install/setup.bash; cd install; \
+	for name in $(EXECUTABLES); do \
+	    tendon_ros/lib/tendon_ros/$$name --help >/dev/null; echo "lib/tendon_ros/$$name runs"; \
+	done
+
+clean:  ## remove what was built, .venv too
+	rm -rf .venv build install log dist *.egg-info .mypy_cache .ruff_cache .pytest_cache \
+	    .hypothesis .import_linter_cache
+	find . -name __pycache__ -prune -exec rm -rf {} +
