@@ -9,8 +9,10 @@ EXECUTABLES := tendon simulator estimator trajectory recorder
 # Messages stay on this machine, and a field of the wrong type is an error instead of garbage.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 export ROS_PYTHON_CHECK_FIELDS := 1
+# Set where make itself was started by a Python with the ROS wheels; ours has its own libraries.
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help setup test lint demo bench colcon clean
+.PHONY: help setup test lint demo bench colcon lowest clean
 
 help:  ## say what there is
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile | expand -t 18
@@ -25,7 +27,7 @@ lint: $(READY)  ## style, types and import walls
 	@echo '== ruff'; $(PY) -m ruff check .
 	@$(PY) -m ruff format --check .
 	@echo '== mypy'; $(PY) -m mypy
-	@echo '== import-linter'; .venv/bin/lint-imports --no-timing
+	@echo '== import-linter'; .venv/bin/lint-imports --no-logo
 
 test: lint  ## lint, then the tests; ARGS='-k bags' goes to pytest
 	@echo '== pytest'; $(PY) -m pytest $(ARGS)
@@ -43,6 +45,13 @@ colcon: $(READY)  ## build into install/ with colcon and start what ros2 run sta
 	for name in $(EXECUTABLES); do \
 	    tendon_ros/lib/tendon_ros/$$name --help >/dev/null; echo "lib/tendon_ros/$$name runs"; \
 	done
+
+lowest: $(READY)  ## the tests with the oldest versions that setup.py allows
+	@rm -rf build/lowest; $(PY) -m venv build/lowest
+	@grep -oE "'[a-z0-9-]+>=[0-9.]+'" setup.py | tr -d "'" | sed 's/>=/==/' >build/lowest/oldest.txt
+	@build/lowest/bin/python -m pip install --quiet --disable-pip-version-check \
+	    --constraint build/lowest/oldest.txt --editable '.[fast,ros,test]'
+	@build/lowest/bin/python -m pytest $(ARGS)
 
 clean:  ## remove what was built, .venv too
 	rm -rf .venv build install log dist *.egg-info .mypy_cache .ruff_cache .pytest_cache \

@@ -15,14 +15,14 @@ NAME = 'tendon_ros'
 ROOT = Path(__file__).parent
 VERSION = re.search(r"__version__ = '(.+)'", (ROOT / NAME / '__init__.py').read_text())[1]
 
-#: lower bounds that ``make test-lowest`` runs the tests with
+#: lower bounds that ``make lowest`` runs the tests with
 REQUIRES = [
     'jinja2>=3.1.2',
     'joblib>=1.3.2',
     'matplotlib>=3.8.0',
     'mcap>=1.1.1',
     'numpy>=1.26.0',
-    'pint>=0.23',
+    'pint>=0.24.1',
     'pydantic>=2.5.0',
     'pyyaml>=6.0.1',
     'rich>=13.7.1',

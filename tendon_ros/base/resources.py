@@ -30,8 +30,8 @@ def _candidates() -> Iterator[Path]:
             yield checkout
         for prefix in package.parents:
             yield prefix / 'share' / 'tendon_ros'
-    for prefix in filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)):
-        yield Path(prefix) / 'share' / 'tendon_ros'
+    for overlay in filter(None, os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)):
+        yield Path(overlay) / 'share' / 'tendon_ros'
 
 
 def config_root() -> Path:
@@ -64,6 +64,5 @@ def config_path(relative: str | Path) -> Path:
         return path
     folder = next(parent for parent in path.parents if parent.is_dir())
     raise ResourceError(
-        f'{path}: does not exist; {folder} has '
-        f'{listed(entry.name for entry in folder.iterdir())}'
+        f'{path}: does not exist; {folder} has {listed(entry.name for entry in folder.iterdir())}'
     )
