@@ -1,0 +1,1 @@
+"""What every other layer stands on: errors, parameters, recordings and the effect contract."""

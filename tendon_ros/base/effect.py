@@ -1,0 +1,85 @@
+"""
+The effect contract: what a file in ``tendon_ros.effects`` declares to become part of the catalogue.
+
+An effect either *modifies* numbers of the model, or adds a *law*, or both. A law is a function of
+scalars that returns its value and its partial derivatives, written with what the compiler of the
+kernel understands: arithmetic, ``abs``, ``min``, ``max``, ``if``, functions of ``math``. The hooks:
+
+``torque(theta, omega, t, *parameters) -> (torque, by_theta, by_omega)``
+    a torque on a pulley [N m].
+``budget(speed, side, load, *parameters) -> (limit, by_speed, by_load)``
+    adds to the largest dry friction of a pulley [N m]; ``speed`` >= 0 [rad/s], ``side`` -1 or 1,
+    ``load`` = sum of |radius| * (both tensions) over the loops on the pulley [N m].
+``elongation(delta, rate, z, t, *parameters) -> (shift, by_delta, by_z, z_rate, by_delta, by_rate, by_z)``
+    adds to a loop's elongation [m]; z is an auxiliary state of order one.
+``tension(delta, rate, z, t, *parameters) -> (force, by_delta, by_rate, by_z, z_rate, by_delta, by_rate, by_z)``
+    adds to a loop's net force [N].
+``winding(theta, *parameters) -> (arc, by_theta, by_theta_twice)``
+    adds to the angle that the cables see [rad].
+
+Laws depend on ``t`` only through switches, whose times ``switches`` declares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.parameter import Parameter
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+HOOKS = ('torque', 'budget', 'elongation', 'tension', 'winding')
+
+
+class Numbers(Protocol):
+    """
+    The numbers of a model that an effect may modify, by name, as arrays over their places.
+
+    ``model[name]`` is the array, for instance ``model['inertia']`` over pulleys.
+    """
+
+    def __getitem__(self, name: str) -> Any:
+        """Return the array of that name, to be changed in place."""
+
+    def loops_on(self, pulley: int) -> Sequence[int]:
+        """Return the loops and couplings that touch a pulley."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """
+    One unmodelled physical effect.
+
+    ``kinds``: the kinds of place where it can act (``pulley``, ``cable``, ``coupling``, ``motor``,
+    ``sensor``, ``contact``). ``modify(numbers, index, **parameters)`` changes numbers at the place.
+    ``law`` is the function for ``hook``; its parameters are all of ``parameters`` in order.
+    ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
+    """
+
+    id: str
+    title: str
+    kinds: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
+    hook: str = ''
+    law: Callable[..., tuple[float, ...]] | None = None
+    stateful: bool = False
+    modify: Callable[..., None] | None = None
+    switches: Callable[..., tuple[float, ...]] | None = None
+    dissipative: bool = False
+    sensors: tuple[str, ...] = ()  # kinds of sensor, where the place is a sensor
+
+    @property
+    def neutral(self) -> Mapping[str, float]:
+        """Parameters with which the effect changes nothing."""
+        return {p.name: p.typical if p.shapes_only else p.neutral for p in self.parameters}
+
+    @property
+    def typical(self) -> Mapping[str, float]:
+        """Parameters of a size that is worth looking for."""
+        return {p.name: p.typical for p in self.parameters}

@@ -1,0 +1,150 @@
+"""
+Recordings: what was measured, as plain arrays.
+
+A :class:`Recording` is the one form in which measured or simulated signals travel through the
+package. It knows nothing of bags or of ROS; ``tendon_ros.bags`` converts. Channels keep their own
+stamps, because real channels are not synchronised; a channel that was not measured is absent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.errors import RecordingError, listed
+
+FloatArray = NDArray[np.float64]
+
+#: unit of each field that a channel name can end in
+FIELD_UNITS: Mapping[str, str] = MappingProxyType(
+    {
+        'position': 'rad',
+        'velocity': 'rad/s',
+        'effort': 'N m',
+        'force': 'N',
+        'torque': 'N m',
+        'force_std': 'N',
+        'torque_std': 'N m',
+    }
+)
+
+
+def channel_name(group: str, joint: str, quantity: str) -> str:
+    """
+    Return the name of a channel, for instance ``actuator/pulley_M/effort``.
+
+    :param group: ``actuator``, ``setpoint``, ``pulley``, ``load_cell`` or ``estimate``.
+    :param joint: the joint's name, empty for a wrench.
+    :param quantity: a key of :data:`FIELD_UNITS`.
+    :return: the parts joined by slashes.
+    """
+    return '/'.join(part for part in (group, joint, quantity) if part)
+
+
+@dataclass(frozen=True)
+class Channel:
+    """
+    One measured signal.
+
+    ``time`` [s], shape (n,), strictly increasing, counted from the recording's epoch;
+    ``value`` in ``unit``, shape (n,). Both are made read-only. NaN is refused: a sample that was
+    not measured is left out.
+
+    :raises RecordingError: on unequal lengths, NaN, or stamps that do not increase.
+    """
+
+    name: str
+    time: FloatArray
+    value: FloatArray
+    unit: str = ''
+
+    def __post_init__(self) -> None:
+        time = np.array(self.time, dtype=np.float64)
+        value = np.array(self.value, dtype=np.float64)
+        if time.ndim != 1 or time.shape != value.shape:
+            raise RecordingError(
+                f'{self.name}: {time.shape} stamps for {value.shape} values; '
+                'give one stamp for each value'
+            )
+        bad = np.flatnonzero(~(np.isfinite(time) & np.isfinite(value)))
+        if bad.size:
+            raise RecordingError(
+                f'{self.name}: sample {bad[0]} is not a finite number; leave out what was not '
+                'measured'
+            )
+        back = np.flatnonzero(np.diff(time) <= 0.0)
+        if back.size:
+            raise RecordingError(
+                f'{self.name}: the stamp of sample {back[0] + 1} ({time[back[0] + 1]:.6f} s) does '
+                f'not come after the one before ({time[back[0]]:.6f} s); sort or drop it'
+            )
+        time.flags.writeable = False
+        value.flags.writeable = False
+        object.__setattr__(self, 'time', time)
+        object.__setattr__(self, 'value', value)
+        if not self.unit:
+            quantity = self.name.rsplit('/', 1)[-1]
+            object.__setattr__(self, 'unit', FIELD_UNITS.get(quantity, ''))
+
+    def at(self, time: FloatArray) -> FloatArray:
+        """
+        Return the values at other times, linearly interpolated, ends held.
+
+        :param time: [s], shape (k,).
+        :return: shape (k,), in the channel's unit.
+        """
+        return np.interp(time, self.time, self.value)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """
+    Channels that were recorded together.
+
+    ``epoch_ns`` is the header stamp [ns] of time zero. ``metadata`` holds text (parameters, seed,
+    versions, sign convention). ``warnings`` are sentences on what reading had to leave out.
+    """
+
+    name: str
+    channels: Mapping[str, Channel]
+    epoch_ns: int = 0
+    metadata: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, 'channels', MappingProxyType(dict(self.channels)))
+        object.__setattr__(self, 'metadata', MappingProxyType(dict(self.metadata)))
+
+    def __getitem__(self, name: str) -> Channel:
+        try:
+            return self.channels[name]
+        except KeyError:
+            raise RecordingError(
+                f'{self.name}: no channel {name!r}; it has {listed(self.channels)}'
+            ) from None
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.channels
+
+    @property
+    def start(self) -> float:
+        """The first stamp of any channel [s]."""
+        return min((float(c.time[0]) for c in self.channels.values() if c.time.size), default=0.0)
+
+    @property
+    def end(self) -> float:
+        """The last stamp of any channel [s]."""
+        return max((float(c.time[-1]) for c in self.channels.values() if c.time.size), default=0.0)
+
+    def with_channels(self, channels: Iterable[Channel]) -> Recording:
+        """
+        Return a copy in which the channels given are added or replaced.
+
+        :param channels: the channels to add.
+        :return: a new recording; this one is unchanged.
+        """
+        return replace(self, channels={**self.channels, **{c.name: c for c in channels}})
