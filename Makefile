@@ -43,7 +43,7 @@ colcon: $(READY)  ## build into install/ with colcon and start what ros2 run sta
 	@$(PY) -m colcon build --base-paths . --packages-select tendon_ros
 	@set +u; . install/setup.bash; cd install; \
 	for name in $(EXECUTABLES); do \
-	    tendon_ros/lib/tendon_ros/$$name --help >/dev/null; echo "lib/tendon_ros/$$name runs"; \
+	    timeout 60 tendon_ros/lib/tendon_ros/$$name --help >/dev/null; echo "lib/tendon_ros/$$name runs"; \
 	done
 
 lowest: $(READY)  ## the tests with the oldest versions that setup.py allows
