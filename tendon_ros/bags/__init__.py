@@ -1,0 +1,1 @@
+"""Bags: recordings written, read, recovered, exported and imported; topics ↔ channels."""

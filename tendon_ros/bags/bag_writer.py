@@ -1,0 +1,211 @@
+"""
+Write a rosbag2 as messages come, so that little is lost when the process is killed.
+
+Everything written up to one flush interval ago is on its way to the disk: a complete chunk of the
+MCAP, a committed transaction of the SQLite file. ``tendon recover`` makes a bag of that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import json
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Self
+
+from rosbags.interfaces import Connection, Qos
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.errors import WriterError
+from rosbags.rosbag2.storage_mcap import McapWriter
+from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
+
+from tendon_ros import __version__
+from tendon_ros.bags.messages import definition_of
+from tendon_ros.bags.qos import offered_qos
+from tendon_ros.base.errors import listed, RecordingError
+
+Storage = Literal['mcap', 'sqlite3']
+
+#: metadata of an unfinished bag; removed when the bag is closed
+SIDECAR = 'custom_data.json'
+
+#: what every bag of this package says about its numbers
+CONVENTIONS: Mapping[str, str] = {
+    'writer': f'tendon_ros {__version__}',
+    'units': 'SI: rad, rad/s, N m, N; header stamps in ns',
+    'sign_convention': (
+        'actuator effort: torque that the motor applies to its pulley, positive along +theta; '
+        'load_cell and body wrench: what the instrument applies to what it touches, positive when '
+        'it pushes along the joint'
+    ),
+}
+
+_PLUGINS = {'mcap': StoragePlugin.MCAP, 'sqlite3': StoragePlugin.SQLITE3}
+
+
+class BagWriter:
+    """
+    A rosbag2 of version 9 that is being written; a context manager.
+
+    Leaving the context closes the bag, also on an error: what was recorded stays readable.
+
+    :param path: folder of the bag; must not exist.
+    :param storage: ``mcap`` or ``sqlite3``.
+    :param compress: compress the chunks of an MCAP with zstd; every MCAP reader knows it.
+    :param flush_seconds: how much recorded time a killed process may lose [s].
+    :param metadata: text to keep in the bag's ``custom_data``.
+    :raises RecordingError: where the bag cannot be created.
+    """
+
+    def __init__(
+        self,
+        path: Path | str,
+        *,
+        storage: Storage = 'mcap',
+        compress: bool = True,
+        flush_seconds: float = 1.0,
+        metadata: Mapping[str, str] | None = None,
+    ) -> None:
+        self.path = Path(path)
+        if storage not in _PLUGINS:
+            raise RecordingError(f'{path}: storage {storage!r} unknown; use {listed(_PLUGINS)}')
+        self._flush_ns = int(flush_seconds * 1e9)
+        self._flushed_ns: int | None = None
+        self._connections: dict[str, Connection] = {}
+        self._metadata = {**(metadata or {}), **CONVENTIONS}
+        self._closed = False
+        self.counts: dict[str, int] = {}
+        try:
+            self._writer = Writer(self.path, version=9, storage_plugin=_PLUGINS[storage])
+            if compress and storage == 'mcap':
+                self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+            self._writer.open()
+            self._save_sidecar()
+        except (WriterError, OSError) as error:
+            raise RecordingError(
+                f'{path}: cannot be created ({error}); give the path of a bag that does not exist '
+                'in a folder that can be written'
+            ) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def metadata(self) -> Mapping[str, str]:
+        """The text that goes into ``custom_data``."""
+        return dict(self._metadata)
+
+    def set_metadata(self, key: str, value: str) -> None:
+        """
+        Keep a text in the bag; a later value for the same key replaces it.
+
+        :param key: for instance ``instrument``.
+        :param value: any text.
+        """
+        self._metadata[key] = value
+        self._save_sidecar()
+
+    def add_topic(
+        self,
+        name: str,
+        msgtype: str,
+        qos: Qos | None = None,
+        *,
+        definition: str | None = None,
+        digest: str | None = None,
+    ) -> None:
+        """
+        Announce a topic; nothing happens where it is there already with that type.
+
+        :param name: absolute name of the topic.
+        :param msgtype: for instance ``sensor_msgs/msg/JointState``.
+        :param qos: what its publisher offers; None for reliable with depth 10.
+        :param definition: the message definition, for types that Jazzy's common interfaces lack.
+        :param digest: the type's RIHS01 hash; None to compute it.
+        :raises RecordingError: for a type without definition, or another type than before.
+        """
+        known = self._connections.get(name)
+        if known is not None and known.msgtype != msgtype:
+            raise RecordingError(
+                f'{self.path}: topic {name} is {known.msgtype} and cannot become {msgtype}; '
+                'record it under another name'
+            )
+        if known is not None:
+            return
+        text, rihs01 = definition_of(msgtype, definition, digest)
+        self._connections[name] = self._writer.add_connection(
+            name,
+            msgtype,
+            msgdef=text,
+            rihs01=rihs01,
+            offered_qos_profiles=[qos or offered_qos()],
+        )
+        self.counts[name] = 0
+
+    def write_raw(self, topic: str, cdr: bytes, log_time_ns: int) -> None:
+        """
+        Append a message.
+
+        :param topic: a topic that was added.
+        :param cdr: the message as it was received.
+        :param log_time_ns: when it was received [ns].
+        :raises RecordingError: for an unknown topic, or where the disk refuses.
+        """
+        connection = self._connections.get(topic)
+        if connection is None:
+            raise RecordingError(
+                f'{self.path}: topic {topic} was not added; it has {listed(self._connections)}'
+            )
+        if self._flushed_ns is None:
+            self._flushed_ns = log_time_ns
+        try:
+            self._writer.write(connection, log_time_ns, cdr)
+            self.counts[topic] += 1
+            # A clock that was set back counts as elapsed too, or nothing would be flushed.
+            if abs(log_time_ns - self._flushed_ns) >= self._flush_ns:
+                self.flush()
+                self._flushed_ns = log_time_ns
+        except OSError as error:
+            raise RecordingError(
+                f'{self.path}: cannot be written ({error}); make room, then `tendon recover` it'
+            ) from error
+
+    def flush(self) -> None:
+        """Hand everything written so far to the operating system."""
+        storage = self._writer.storage
+        if isinstance(storage, McapWriter):
+            if storage.chunk.msgs:
+                storage.close_chunk()
+            storage.bio.flush()
+        elif isinstance(storage, Sqlite3Writer):
+            storage.conn.commit()
+
+    def close(self) -> None:
+        """Finish the bag: index and metadata. A second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        if not any(self.counts.values()):
+            # The format has no empty time span; rosbags would note the largest integer as start.
+            self._writer.min_timestamp = 0
+        for key, value in sorted(self._metadata.items()):
+            self._writer.set_custom_data(key, value)
+        try:
+            self._writer.close()
+        except OSError as error:
+            self._writer.abort()
+            raise RecordingError(
+                f'{self.path}: cannot be finished ({error}); make room, then `tendon recover` it'
+            ) from error
+        (self.path / SIDECAR).unlink(missing_ok=True)
+
+    def _save_sidecar(self) -> None:
+        (self.path / SIDECAR).write_text(json.dumps(self._metadata, indent=1), encoding='utf-8')
