@@ -158,95 +158,6 @@ def change(
     state_at(m, d, w, g, s, c, t, NEXT)
 
 
-def advance(
-    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, end: float,
-    noise: Floats, rows: Floats, every: int, smoothly: int,
-) -> int:  # fmt: skip
-    """
-    Integrate from ``c[CLOCK]`` to ``end``, state and forces in ``w[START:]`` at both.
-
-    With ``smoothly`` the ticks of the sensors are passed without stopping, and recorded from the
-    dense output.
-    """
-    t = c[CLOCK]
-    steps = 0
-    while t < end - SMALLEST:
-        stop = end
-        for b in range(d[BREAKS]):
-            switch = m[d[SWITCH] + b]
-            if t + SMALLEST < switch < stop:
-                stop = switch
-        w[EPOCH] = 0.5 * (t + stop)
-        if d[BREAKS] > 0:
-            state_at(m, d, w, g, s, c, t, START)
-        while t < stop - SMALLEST:
-            steps += 1
-            linearise(m, d, w)
-            outer(m, d, w, g, s, t)
-            for n in range(2 * N + d[ACTIVE]):
-                w[FIRST + n] = w[F + n]
-            for k in range(M):
-                w[SLACK_START + k] = w[SLACK + k]
-            whole = stop - t
-            h = min(c[STEP], whole)
-            if h > 0.7 * whole and h < whole:
-                h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
-            error = step(m, d, w, g, s, c, t, h)
-            while not error <= 1.0:
-                g[COUNT + 1] += 1
-                h *= clipped(0.9 * error**-0.25, 0.1, 0.7) if error < 1e300 else 0.1
-                if h < SMALLEST or steps > MOST_STEPS:
-                    return DIVERGED
-                error = step(m, d, w, g, s, c, t, h)
-            grown = h * clipped(0.9 * (error + 1e-10) ** -0.25, 0.2, 5.0)
-            c[STEP] = max(grown, c[STEP]) if h == whole else grown
-            g[COUNT] += 1
-            evaluate(m, d, w, g, s, c, t + h, NEXT)
-            part, kind, index = crossing(m, d, w, g, s, c, t, h)
-            if part < 2.0:
-                g[COUNT + 2] += 1
-                h *= part
-                step(m, d, w, g, s, c, t, h)
-                evaluate(m, d, w, g, s, c, t + h, NEXT)
-                if kind == SLIDE:  # refine: the dense output is of lower order than the step
-                    pace = w[F + N + index]
-                    miss = w[NEXT + N + index]
-                    if abs(miss) > 1e-12 and abs(miss) < 0.5 * h * abs(pace):
-                        h -= miss / pace
-                        step(m, d, w, g, s, c, t, h)
-                        evaluate(m, d, w, g, s, c, t + h, NEXT)
-            if smoothly == 1:
-                report(m, d, w, g, s, c, t, h, noise, rows, every)
-            t = t + h if h < whole or part < 2.0 else stop
-            if part < 2.0:
-                change(m, d, w, g, s, c, t, kind, index)
-            elif smoothly == 1:
-                evaluate(m, d, w, g, s, c, t, NEXT)
-            for n in range(2 * N + d[ACTIVE]):
-                w[START + n] = w[NEXT + n]
-            if steps > MOST_STEPS or not abs(w[START]) < 1e6:
-                return DIVERGED
-    c[CLOCK] = end
-    return DONE
-
-
-def report(
-    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, h: float,
-    noise: Floats, rows: Floats, every: int,
-) -> None:  # fmt: skip
-    """Record the ticks that the step just taken has passed, from its dense output."""
-    due_at = (c[TICK] + 1.0) * m[PERIOD]
-    while due_at <= t + h + SMALLEST:
-        part = min((due_at - t) / h, 1.0)
-        between(d, w, part, TRIAL)
-        prescribe(m, d, w, s, due_at, TRIAL)
-        evaluate(m, d, w, g, s, c, due_at, TRIAL)
-        c[TICK] += 1.0
-        sense(m, d, w, c, noise, TRIAL)
-        record(m, d, w, c, due_at, rows, every, TRIAL)
-        due_at = (c[TICK] + 1.0) * m[PERIOD]
-
-
 def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
     """Return the torque that motor j reports: its command, or what a prescribed motion asks of it."""
     i = MOTOR_PULLEY[j]
@@ -326,6 +237,95 @@ def record(
     o += K
     for q in range(Q):
         rows[o + q] = c[READING + q]
+
+
+def report(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, h: float,
+    noise: Floats, rows: Floats, every: int,
+) -> None:  # fmt: skip
+    """Record the ticks that the step just taken has passed, from its dense output."""
+    due_at = (c[TICK] + 1.0) * m[PERIOD]
+    while due_at <= t + h + SMALLEST:
+        part = min((due_at - t) / h, 1.0)
+        between(d, w, part, TRIAL)
+        prescribe(m, d, w, s, due_at, TRIAL)
+        evaluate(m, d, w, g, s, c, due_at, TRIAL)
+        c[TICK] += 1.0
+        sense(m, d, w, c, noise, TRIAL)
+        record(m, d, w, c, due_at, rows, every, TRIAL)
+        due_at = (c[TICK] + 1.0) * m[PERIOD]
+
+
+def advance(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, end: float,
+    noise: Floats, rows: Floats, every: int, smoothly: int,
+) -> int:  # fmt: skip
+    """
+    Integrate from ``c[CLOCK]`` to ``end``, state and forces in ``w[START:]`` at both.
+
+    With ``smoothly`` the ticks of the sensors are passed without stopping, and recorded from the
+    dense output.
+    """
+    t = c[CLOCK]
+    steps = 0
+    while t < end - SMALLEST:
+        stop = end
+        for b in range(d[BREAKS]):
+            switch = m[d[SWITCH] + b]
+            if t + SMALLEST < switch < stop:
+                stop = switch
+        w[EPOCH] = 0.5 * (t + stop)
+        if d[BREAKS] > 0:
+            state_at(m, d, w, g, s, c, t, START)
+        while t < stop - SMALLEST:
+            steps += 1
+            linearise(m, d, w)
+            outer(m, d, w, g, s, t)
+            for n in range(2 * N + d[ACTIVE]):
+                w[FIRST + n] = w[F + n]
+            for k in range(M):
+                w[SLACK_START + k] = w[SLACK + k]
+            whole = stop - t
+            h = min(c[STEP], whole)
+            if h > 0.7 * whole and h < whole:
+                h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
+            error = step(m, d, w, g, s, c, t, h)
+            while not error <= 1.0:
+                g[COUNT + 1] += 1
+                h *= clipped(0.9 * error**-0.25, 0.1, 0.7) if error < 1e300 else 0.1
+                if h < SMALLEST or steps > MOST_STEPS:
+                    return DIVERGED
+                error = step(m, d, w, g, s, c, t, h)
+            grown = h * clipped(0.9 * (error + 1e-10) ** -0.25, 0.2, 5.0)
+            c[STEP] = max(grown, c[STEP]) if h == whole else grown
+            g[COUNT] += 1
+            evaluate(m, d, w, g, s, c, t + h, NEXT)
+            part, kind, index = crossing(m, d, w, g, s, c, t, h)
+            if part < 2.0:
+                g[COUNT + 2] += 1
+                h *= part
+                step(m, d, w, g, s, c, t, h)
+                evaluate(m, d, w, g, s, c, t + h, NEXT)
+                if kind == SLIDE:  # refine: the dense output is of lower order than the step
+                    pace = w[F + N + index]
+                    miss = w[NEXT + N + index]
+                    if abs(miss) > 1e-12 and abs(miss) < 0.5 * h * abs(pace):
+                        h -= miss / pace
+                        step(m, d, w, g, s, c, t, h)
+                        evaluate(m, d, w, g, s, c, t + h, NEXT)
+            if smoothly == 1:
+                report(m, d, w, g, s, c, t, h, noise, rows, every)
+            t = t + h if h < whole or part < 2.0 else stop
+            if part < 2.0:
+                change(m, d, w, g, s, c, t, kind, index)
+            elif smoothly == 1:
+                evaluate(m, d, w, g, s, c, t, NEXT)
+            for n in range(2 * N + d[ACTIVE]):
+                w[START + n] = w[NEXT + n]
+            if steps > MOST_STEPS or not abs(w[START]) < 1e6:
+                return DIVERGED
+    c[CLOCK] = end
+    return DONE
 
 
 def control(m: Floats, d: Ints, w: Floats, c: Floats, setpoint: Floats, o: int) -> None:

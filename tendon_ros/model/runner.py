@@ -1,0 +1,205 @@
+"""
+The kernel with its arrays and its carried state: what every way of running the physics stands on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.errors import SimulationError
+from tendon_ros.model.engine import Engine, engine_for
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.layout import Arrays, Structure
+from tendon_ros.model.signals import Signals
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """
+    What happened at each recorded tick, in the instrument's order and SI units.
+
+    ``table``, shape (ticks, columns), is the kernel's record; the properties are views of it.
+    """
+
+    instrument: Instrument
+    structure: Structure
+    table: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @cached_property
+    def _back(self) -> NDArray[np.intp]:
+        """Where each pulley of the instrument stands in the kernel's order."""
+        return np.argsort(np.array(self.structure.order))
+
+    def _columns(self, start: int, count: int) -> FloatArray:
+        return self.table[:, start : start + count]
+
+    @property
+    def time(self) -> FloatArray:
+        """Time [s], shape (ticks,)."""
+        return self.table[:, 0]
+
+    @property
+    def angle(self) -> FloatArray:
+        """True angles [rad], shape (ticks, pulleys)."""
+        return self._columns(1, self.structure['N'])[:, self._back]
+
+    @property
+    def velocity(self) -> FloatArray:
+        """True velocities [rad/s], shape (ticks, pulleys)."""
+        n = self.structure['N']
+        return self._columns(1 + n, n)[:, self._back]
+
+    @property
+    def effort(self) -> FloatArray:
+        """Torques that the motors report [N m], shape (ticks, motors)."""
+        return self._columns(1 + 2 * self.structure['N'], self.structure['U'])
+
+    @property
+    def loop_force(self) -> FloatArray:
+        """Net force of each loop [N], torque of each coupling [N m], shape (ticks, both)."""
+        start = 1 + 2 * self.structure['N'] + self.structure['U']
+        return self._columns(start, self.structure['M'])
+
+    @property
+    def contact_force(self) -> FloatArray:
+        """Force that the instrument applies at each contact [N], shape (ticks, contacts)."""
+        start = 1 + 2 * self.structure['N'] + self.structure['U'] + self.structure['M']
+        return self._columns(start, self.structure['K'])
+
+    @property
+    def reading(self) -> FloatArray:
+        """What the sensors say, shape (ticks, sensors), in the instrument's order of sensors."""
+        return self._columns(self.structure['WIDTH_ROW'] - self.structure['Q'], self.structure['Q'])
+
+
+class Runner:
+    """
+    One kernel in motion. Not for users: see :mod:`tendon_ros.model.simulation`.
+
+    :param instrument: names and orders for what is returned.
+    :param arrays: its numbers.
+    :param engine: ``auto``, ``compiled`` or ``plain``.
+    """
+
+    def __init__(self, instrument: Instrument, arrays: Arrays, engine: str = 'auto') -> None:
+        self.instrument = instrument
+        self.structure = arrays.structure
+        self.engine: Engine = engine_for(arrays.structure, engine)
+        self._work = self.engine.array(np.zeros(arrays.structure.length('w')))
+        self.rest({})
+        self.load(arrays)
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return float(self._carried[self.structure['CLOCK']])
+
+    @property
+    def tick(self) -> int:
+        """Controller periods passed."""
+        return int(self._carried[self.structure['TICK']])
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Steps, rejected steps and located events so far."""
+        at = self.structure['COUNT']
+        found = (int(n) for n in self._modes[at : at + 3])
+        return dict(zip(('steps', 'rejected', 'events'), found, strict=True))
+
+    def load(self, arrays: Arrays) -> None:
+        """
+        Take other numbers from now on; memories begin anew where their meaning changed.
+
+        :param arrays: of the same structure.
+        """
+        at = self.structure
+        new = arrays.d[at['ACTIVE'] : at['BREAKS']]
+        old = getattr(self, '_memories', new)
+        if not np.array_equal(new, old):
+            for n in range(2 * at['N'], at['DIM']):
+                self._state[n] = 0.0
+        for i in range(at['N']):
+            self._modes[at['MODE'] + i] = 2  # what slides and what sticks is seen anew
+        self._memories = new.copy()
+        self._m: Any = self.engine.array(arrays.m)
+        self._d: Any = self.engine.array(arrays.d)
+
+    def rest(self, pose: Mapping[str, float]) -> None:
+        """
+        Put the mechanics at rest and the clock at zero.
+
+        :param pose: angles [rad] by pulley; those not named are zero.
+        """
+        at = self.structure
+        angles = np.zeros(at['DIM'])
+        for name, angle in pose.items():
+            angles[at.order.index(self.instrument.index(name))] = angle
+        carried = np.zeros(at.length('c'))
+        carried[at['STEP']] = 0.1 * self.instrument.control_period
+        carried[at['LAST'] : at['LAST'] + at['U']] = 1e301
+        modes = np.zeros(at.length('g'), dtype=np.int64)
+        modes[at['MODE'] : at['MODE'] + at['N']] = 2
+        self._state = self.engine.array(angles)
+        self._carried = self.engine.array(carried)
+        self._modes = self.engine.array(modes)
+
+    def advance(
+        self,
+        setpoints: FloatArray,
+        ticks: int,
+        *,
+        every: int = 1,
+        smoothly: bool = False,
+        signals: Signals | None = None,
+        noise: FloatArray | None = None,
+    ) -> Rows:
+        """
+        Advance a number of controller periods.
+
+        :param setpoints: for sampled controllers [rad], shape (ticks, motors).
+        :param ticks: how many periods.
+        :param every: record every so many.
+        :param smoothly: do not stop at ticks; nothing sampled acts then.
+        :param signals: prescribed motion, torques and references.
+        :param noise: standard normal numbers, one for each tick and sensor; none where None.
+        :return: what was recorded.
+        :raises SimulationError: where it diverges.
+        """
+        at = self.structure
+        last = self.tick + ticks - (0 if smoothly else 1)
+        count = last // every - (self.tick - 1) // every
+        rows = self.engine.array(np.zeros(count * at['WIDTH_ROW']))
+        status = self.engine.module.rollout(
+            self._m,
+            self._d,
+            self._work,
+            self._modes,
+            self.engine.array((signals or Signals.none()).flat),
+            self._carried,
+            self._state,
+            self.engine.array(np.ravel(setpoints)),
+            ticks,
+            self.engine.array(np.zeros(0) if noise is None else np.ravel(noise)),
+            rows,
+            every,
+            int(smoothly),
+        )
+        if status != 0:
+            raise SimulationError(
+                f'{self.instrument.name}: the simulation diverged near {self.time:.4f} s; check '
+                'gains, damping and inertias, or ask for a smaller tolerance'
+            )
+        written = int(self._carried[at['ROW']])
+        table = np.array(rows, dtype=np.float64).reshape(-1, at['WIDTH_ROW'])[:written]
+        return Rows(self.instrument, at, table)
