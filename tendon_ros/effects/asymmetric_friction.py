@@ -1,0 +1,56 @@
+"""
+Asymmetric friction: dry friction that differs with direction.
+
+Seals, helical gears and cables that climb their groove rub more one way than the other.
+
+Equation::
+
+    |tau| <= forward while moving (or pushed) along +theta, backward the other way
+
+The mean of the two acts like Coulomb friction; half of their difference acts like a torque bias
+that vanishes at rest.
+
+Source: Armstrong-Helouvry, "Control of Machines with Friction" (1991), measured on a PUMA arm.
+"""
+
+from __future__ import annotations
+
+from tendon_ros.base.effect import Effect
+from tendon_ros.base.parameter import Parameter
+
+
+def asymmetric_friction_law(
+    speed: float, side: float, load: float, forward: float, backward: float
+) -> tuple[float, float, float]:
+    """Return the limit of the dry friction [N m], and its slopes."""
+    return (forward if side > 0.0 else backward), 0.0, 0.0
+
+
+EFFECT = Effect(
+    id='asymmetric_friction',
+    title='Asymmetric friction',
+    kinds=('pulley',),
+    parameters=(
+        Parameter(
+            name='forward',
+            unit='N m',
+            meaning='friction of motion along +theta',
+            neutral=0.0,
+            low=0.0,
+            high=10.0,
+            typical=0.08,
+        ),
+        Parameter(
+            name='backward',
+            unit='N m',
+            meaning='friction of motion along -theta',
+            neutral=0.0,
+            low=0.0,
+            high=10.0,
+            typical=0.03,
+        ),
+    ),
+    hook='budget',
+    law=asymmetric_friction_law,
+    dissipative=True,
+)

@@ -1,0 +1,67 @@
+"""
+Pre-sliding friction: friction that builds up over a small displacement after a reversal.
+
+Asperities bend before they slip. After each reversal the friction goes from one side to the other
+over an angle, like a spring that yields; seen over torque it is a rounded hysteresis loop.
+
+Equation, with s the used part of the budget and sigma = sign(omega)::
+
+    tau = -s * (torque + budgets of all other dry friction of this pulley)
+    ds/dt = omega / angle * (1 - sigma * s)
+
+``torque`` is the effect's own budget. ``angle`` shapes all dry friction of the pulley, also that
+which other effects bring: it can be used with ``torque`` 0 to round off those. With ``angle`` 0
+the pulley sticks rigidly, and the effect is Coulomb friction.
+
+Over small enough movements the bending gives energy back; over a closed cycle it never gives any.
+
+Source: Dahl, "A solid friction model", Aerospace Corporation TOR-158 (1968), with exponent one.
+"""
+
+from __future__ import annotations
+
+from tendon_ros.base.effect import Effect, Numbers
+from tendon_ros.base.parameter import Parameter
+
+
+def presliding_friction_law(
+    speed: float, side: float, load: float, torque: float, angle: float
+) -> tuple[float, float, float]:
+    """Return the limit of the dry friction [N m], and its slopes."""
+    return torque, 0.0, 0.0
+
+
+def modify(numbers: Numbers, index: int, torque: float, angle: float) -> None:
+    """Let the dry friction of a pulley build up over an angle."""
+    numbers['breakaway'][index] += angle
+
+
+EFFECT = Effect(
+    id='presliding_friction',
+    title='Pre-sliding friction',
+    kinds=('pulley',),
+    parameters=(
+        Parameter(
+            name='torque',
+            unit='N m',
+            meaning='friction when fully built up',
+            neutral=0.0,
+            low=0.0,
+            high=10.0,
+            typical=0.05,
+        ),
+        Parameter(
+            name='angle',
+            unit='rad',
+            meaning='angle over which all dry friction of the pulley builds up',
+            neutral=0.0,
+            low=0.0,
+            high=0.5,
+            typical=0.005,
+        ),
+    ),
+    hook='budget',
+    law=presliding_friction_law,
+    modify=modify,
+    dissipative=True,
+)

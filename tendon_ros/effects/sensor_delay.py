@@ -1,0 +1,48 @@
+"""
+Sensor delay: a reading that is late.
+
+Filters, buses and slow converters report what was, under the stamp of what is.
+
+Equation::
+
+    reading(t) = truth(t - time)
+
+Source: definition.
+"""
+
+from __future__ import annotations
+
+from tendon_ros.base.effect import Effect, Numbers
+from tendon_ros.base.parameter import Parameter
+
+
+def modify(numbers: Numbers, index: int, time: float) -> None:
+    """Delay a sensor."""
+    numbers['sensor_delay'][index] += time
+
+
+EFFECT = Effect(
+    id='sensor_delay',
+    title='Sensor delay',
+    kinds=('sensor',),
+    parameters=(
+        Parameter(
+            name='time',
+            unit='s',
+            meaning='age of the reading',
+            neutral=0.0,
+            low=0.0,
+            high=0.05,
+            typical=0.01,
+        ),
+    ),
+    modify=modify,
+    sensors=(
+        'angle',
+        'velocity',
+        'motor_torque',
+        'contact_force',
+        'contact_torque',
+        'loop_torque',
+    ),
+)

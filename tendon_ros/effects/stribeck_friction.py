@@ -1,0 +1,71 @@
+"""
+Stribeck friction: static friction above the sliding one, falling with speed.
+
+A lubricated contact holds more at rest than it rubs in motion. Where the drive is soft, the pulley
+then moves in jerks.
+
+Equation::
+
+    |tau| <= sliding + static / (1 + (omega / speed)^2)
+
+``static`` is what holding adds to sliding. The fall is rational rather than exponential: it begins
+as flat, ends at the same level, and costs no exponential in the kernel. The constant part is the
+same as Coulomb friction; without ``static`` the two cannot be told apart.
+
+Source: the rational fall is that of Hess and Soom, Journal of Tribology 112 (1990).
+"""
+
+from __future__ import annotations
+
+import math
+
+from tendon_ros.base.effect import Effect
+from tendon_ros.base.parameter import Parameter
+
+
+def stribeck_friction_law(
+    omega: float, side: float, load: float, static: float, sliding: float, speed: float
+) -> tuple[float, float, float]:
+    """Return the limit of the dry friction [N m], and its slopes."""
+    part = omega / speed
+    held = 1.0 / (1.0 + part * part)
+    return sliding + static * held, -2.0 * static * part * held * held / speed, 0.0
+
+
+EFFECT = Effect(
+    id='stribeck_friction',
+    title='Stribeck friction',
+    kinds=('pulley',),
+    parameters=(
+        Parameter(
+            name='static',
+            unit='N m',
+            meaning='what static friction adds to the sliding one',
+            neutral=0.0,
+            low=0.0,
+            high=10.0,
+            typical=0.1,
+        ),
+        Parameter(
+            name='sliding',
+            unit='N m',
+            meaning='friction that remains at high speed',
+            neutral=0.0,
+            low=0.0,
+            high=10.0,
+            typical=0.04,
+        ),
+        Parameter(
+            name='speed',
+            unit='rad/s',
+            meaning='speed at which half of the static part is gone',
+            neutral=math.nan,
+            low=1e-3,
+            high=50.0,
+            typical=0.1,
+        ),
+    ),
+    hook='budget',
+    law=stribeck_friction_law,
+    dissipative=True,
+)
