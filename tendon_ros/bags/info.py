@@ -23,8 +23,8 @@ class TopicInfo:
     """
     One topic: times in seconds, rate in Hz, None where too few messages tell.
 
-    ``clock`` is ``header`` where the stamps come from the messages, else ``log``. ``jitter_p99`` is
-    the 99th percentile of the distance of an interval from the median interval.
+    ``clock`` is ``header`` where the stamps come from the messages, else ``log``. ``jitter_p99``
+    is the 99th percentile of the distance of an interval from the median interval.
     """
 
     name: str

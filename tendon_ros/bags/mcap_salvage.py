@@ -80,7 +80,8 @@ def _parse(opcode: int, payload: bytes) -> Record | None:
     """Return the record, None for the kinds that carry no recorded data."""
     data = ReadDataStream(BytesIO(payload))
     if opcode == Opcode.MESSAGE:
-        return Message.read(data, len(payload))
+        message: Message = Message.read(data, len(payload))
+        return message
     parse = _PLAIN.get(Opcode(opcode))
     record: Record | None = parse(data) if parse else None
     return record

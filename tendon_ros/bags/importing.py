@@ -1,0 +1,131 @@
+"""Foreign recordings → recordings by contract, as a mapping file says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tendon_ros.bags.mapping import factor, Mapping, unit_of
+from tendon_ros.bags.stamps import to_seconds, to_stamps
+from tendon_ros.bags.tables import read_tables, Table
+from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.recording import Channel, FloatArray, Recording
+
+#: stamps that stray further from an even spacing are worth a warning [share of the spacing]
+JITTER = 0.5
+
+
+def run_keys(path: Path | str, mapping: Mapping) -> list[str]:
+    """
+    Return the runs that a file holds.
+
+    :param path: the foreign file.
+    :param mapping: how to read it.
+    :return: their keys, in the order of the file.
+    """
+    return list(read_tables(Path(path), mapping.format, mapping.runs))
+
+
+def import_runs(
+    path: Path | str, mapping: Mapping, select: Sequence[str] = ()
+) -> Iterator[Recording]:
+    """
+    Yield the runs of a foreign file, one at a time.
+
+    :param path: the foreign file.
+    :param mapping: how to read it.
+    :param select: keys of the runs wanted; none for all.
+    :return: one recording a run, named by its key.
+    :raises RecordingError: where the file does not fit the mapping.
+    """
+    path = Path(path)
+    tables = read_tables(path, mapping.format, mapping.runs)
+    missing = [key for key in select if key not in tables]
+    if missing:
+        raise RecordingError(f'{path}: no run {listed(missing)}; it has {listed(tables)}')
+    for key in select or tables:
+        yield _recording(path, tables[key](), mapping)
+
+
+def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
+    """Return a run as a recording."""
+    warnings: list[str] = []
+    place = f'{path}: run {table.key}'
+    time = _time(path, table, mapping)
+    usable = np.isfinite(time)
+    # Whole nanoseconds, as a bag keeps them, so that the bag reads back as the same numbers.
+    time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
+    latest = np.maximum.accumulate(np.where(usable, time, -np.inf))
+    usable[1:] &= time[1:] > latest[:-1]
+    if not usable.all():
+        first = int(np.flatnonzero(~usable)[0])
+        warnings.append(
+            f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not after '
+            f'the row before, or not a number), first row {first}'
+        )
+    _warn_of_jitter(place, time[usable], warnings)
+    channels = {}
+    for name, source in mapping.channels.items():
+        raw = table.column(source.column, f'{path}: channels.{name}')
+        value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
+        value = value + source.offset
+        keep = usable & np.isfinite(value)
+        lost = usable & ~keep
+        if not keep.any():
+            warnings.append(f'{place}: {name} has no finite value; taken as unmeasured')
+            continue
+        if lost.any():
+            warnings.append(
+                f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out (not '
+                f'a finite number), first row {int(np.flatnonzero(lost)[0])}'
+            )
+        channels[name] = Channel(name, time[keep], value[keep])
+    if not any(name.startswith('actuator/') for name in channels):
+        raise RecordingError(f'{place}: no usable sample of the motors; check time and columns')
+    return Recording(
+        name=table.key,
+        channels=channels,
+        epoch_ns=round(mapping.epoch.timestamp() * 1e9),
+        metadata=_metadata(path, table, mapping),
+        warnings=tuple(warnings),
+    )
+
+
+def _time(path: Path, table: Table, mapping: Mapping) -> FloatArray:
+    """Return the time of each row [s], shape (n,)."""
+    if mapping.time.rate is not None:
+        rows = next(iter(table.columns.values())).size
+        return np.arange(rows) / factor(mapping.time.rate, 'Hz')
+    assert mapping.time.column is not None
+    raw = table.column(mapping.time.column, f'{path}: time')
+    return raw * factor(mapping.time.unit, 's')
+
+
+def _warn_of_jitter(place: str, time: FloatArray, warnings: list[str]) -> None:
+    """Say where the stamps are far from evenly spaced."""
+    spacing = np.diff(time)
+    if not spacing.size:
+        return
+    usual = float(np.median(spacing))
+    stray = np.abs(spacing - usual) > JITTER * usual
+    if stray.any():
+        first = int(np.flatnonzero(stray)[0])
+        warnings.append(
+            f'{place}: {np.count_nonzero(stray)} of {spacing.size} intervals differ by more than '
+            f'{JITTER:.0%} from {usual:.6g} s, first after {time[first]:.6f} s'
+        )
+
+
+def _metadata(path: Path, table: Table, mapping: Mapping) -> dict[str, str]:
+    """Return what the bag keeps about where its numbers come from."""
+    texts = {
+        **mapping.metadata,
+        'source_file': path.name,
+        'source_run': table.key,
+        'source_header': table.header,
+        'attribution': mapping.attribution,
+        'licence': mapping.licence,
+    }
+    return {key: text for key, text in texts.items() if text}

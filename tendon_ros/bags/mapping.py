@@ -1,0 +1,233 @@
+"""
+The mapping file of ``tendon import``: how a foreign file becomes channels.
+
+.. code-block:: yaml
+
+    format: npz                  # npz, csv or mat
+    runs: {include: '[0-9][0-9]', header: 'hdr_{key}'}
+    time: {column: 0, unit: s}   # or {rate: 1000 Hz} where the file has no time
+    epoch: 2017-06-01T00:00:00Z  # header stamp of time zero; one second after 1970 by default
+    channels:
+      actuator/pulley_motor/position:
+        column: 8                # number counted from 0, or a name
+        unit: turn / (4096 * 35) # what one step of the raw number is
+        scale: 1.0               # a further factor
+        sign: -1                 # turns the direction
+        offset: 0.5              # added last, in the channel's SI unit
+    metadata: {tool: Maryland}
+    attribution: Who made the data, where it was published.
+    licence: ODbL 1.0
+
+``value = sign · scale · unit · raw + offset``. ``runs`` is for files that hold one table a run;
+without it the file is one run, and a column is one array of the file.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime, UTC
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import pint
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    field_validator,
+    model_validator,
+    ValidationError,
+)
+import yaml
+
+from tendon_ros.bags.topics import place_of
+from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.recording import FIELD_UNITS
+
+_UNITS = pint.UnitRegistry()
+#: pint takes a count for a radian; an angle has to name one of these
+_ANGLES = frozenset(
+    {
+        *('radian', 'milliradian', 'degree', 'turn', 'arcminute', 'arcsecond'),
+        *('revolutions_per_minute', 'revolutions_per_second'),
+    }
+)
+
+Column = Annotated[int, Field(ge=0, strict=True)] | Annotated[str, Field(min_length=1)]
+
+
+def factor(text: str, target: str) -> float:
+    """
+    Return what one of a unit is in another.
+
+    :param text: a pint expression, for instance ``turn / 4096`` or ``3.98e-5 N m``.
+    :param target: for instance ``rad``.
+    :return: the factor.
+    :raises ValueError: where the unit is unknown or of another kind.
+    """
+    try:
+        quantity = _UNITS.Quantity(1.0, 'dimensionless') * _UNITS.parse_expression(text)
+        value = float(quantity.to(target).magnitude)
+        names = {str(name) for name, _ in quantity.unit_items()}
+    except Exception as error:
+        # pint raises from tokenizer errors to its own kinds, all of which mean the same here.
+        raise ValueError(f'{text!r} is not a unit that converts to {target}') from error
+    if target.startswith('rad') and not names & _ANGLES:
+        raise ValueError(f'{text!r} names no angle; write, say, turn / 4096')
+    if not 0.0 < abs(value) < float('inf'):
+        raise ValueError(f'{text!r} is {value} {target}')
+    return value
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra='forbid', frozen=True, allow_inf_nan=False)
+
+
+class Runs(_Strict):
+    """Which arrays of the file are runs, and which text belongs to them."""
+
+    include: str = '*'
+    exclude: str = ''
+    header: str = ''
+
+    @field_validator('header')
+    @classmethod
+    def _names_key(cls, value: str) -> str:
+        if value and '{key}' not in value:
+            raise ValueError("must hold {key}, for instance 'hdr_{key}'")
+        return value
+
+
+class Time(_Strict):
+    """Where the time comes from: a column, or a constant rate."""
+
+    column: Column | None = None
+    unit: str = 's'
+    rate: str | None = None
+
+    @field_validator('unit')
+    @classmethod
+    def _is_time(cls, value: str) -> str:
+        factor(value, 's')
+        return value
+
+    @field_validator('rate')
+    @classmethod
+    def _is_rate(cls, value: str | None) -> str | None:
+        if value is not None and factor(value, 'Hz') < 0.0:
+            raise ValueError(f'{value!r} is negative')
+        return value
+
+    @model_validator(mode='after')
+    def _one_of(self) -> Time:
+        if (self.column is None) == (self.rate is None):
+            raise ValueError('give either a column or a rate')
+        return self
+
+
+class Source(_Strict):
+    """Where a channel comes from; see the module for the formula."""
+
+    column: Column
+    unit: str
+    scale: float = 1.0
+    sign: Literal[1, -1] = 1
+    offset: float = 0.0
+
+    @field_validator('scale')
+    @classmethod
+    def _not_zero(cls, value: float) -> float:
+        if value == 0.0:
+            raise ValueError('must not be 0')
+        return value
+
+
+class Mapping(_Strict):
+    """A mapping file."""
+
+    format: Literal['npz', 'csv', 'mat']
+    runs: Runs | None = None
+    time: Time
+    epoch: datetime = datetime(1970, 1, 1, 0, 0, 1, tzinfo=UTC)
+    channels: dict[str, Source] = Field(min_length=1)
+    metadata: dict[str, str] = {}
+    attribution: str = ''
+    licence: str = ''
+
+    @field_validator('epoch')
+    @classmethod
+    def _in_utc(cls, value: datetime) -> datetime:
+        value = value if value.tzinfo else value.replace(tzinfo=UTC)
+        if value.timestamp() < 0.0:
+            raise ValueError('must not be before 1970')
+        return value
+
+    @field_validator('channels')
+    @classmethod
+    def _known(cls, value: dict[str, Source]) -> dict[str, Source]:
+        for name, source in value.items():
+            try:
+                place_of(name)
+                factor(source.unit, unit_of(name))
+            except (RecordingError, ValueError) as error:
+                raise ValueError(f'{name}: {error}') from error
+        if not any(name.startswith('actuator/') for name in value):
+            raise ValueError(f'none of {listed(value)} is of the motors; map actuator/JOINT/FIELD')
+        return value
+
+    @model_validator(mode='after')
+    def _runs_fit(self) -> Mapping:
+        if self.runs is not None and self.format == 'csv':
+            raise ValueError('runs: a CSV file is one run; leave it out')
+        return self
+
+
+def unit_of(channel: str) -> str:
+    """
+    Return the SI unit of a channel.
+
+    :param channel: name of the channel.
+    :return: for instance ``rad/s``.
+    """
+    return FIELD_UNITS[channel.rsplit('/', 1)[-1]]
+
+
+def load_mapping(path: Path | str) -> Mapping:
+    """
+    Read and check a mapping file.
+
+    :param path: YAML file.
+    :return: the mapping.
+    :raises RecordingError: on the first fault, with file, field and mend.
+    """
+    try:
+        data: Any = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
+        if not isinstance(data, dict):
+            raise RecordingError(f'{path}: no fields; a mapping needs format, time and channels')
+        return Mapping.model_validate(data)
+    except OSError as error:
+        raise RecordingError(
+            f'{path}: cannot be read ({error.strerror}); give the path of a mapping file'
+        ) from error
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        detail = ' '.join(str(error).split())
+        raise RecordingError(f'{path}: not YAML ({detail}); mend the line') from error
+    except ValidationError as error:
+        raise RecordingError(f'{path}: {_sentence(error)}') from error
+
+
+def _sentence(error: ValidationError) -> str:
+    """Return the first fault that pydantic found, with its mend."""
+    fault = error.errors()[0]
+    place = '.'.join(str(part) for part in fault['loc']) or 'mapping'
+    if fault['type'] == 'extra_forbidden':
+        model = Mapping
+        known = {
+            'runs': Runs.model_fields,
+            'time': Time.model_fields,
+            'channels': Source.model_fields,
+        }.get(str(fault['loc'][0]) if len(fault['loc']) > 1 else '', model.model_fields)
+        return f'{place}: unknown field; use {listed(known)}'
+    if fault['type'] == 'missing':
+        return f'{place}: missing; add it'
+    message = fault['msg'].removeprefix('Value error, ')
+    return f'{place}: {message[0].lower()}{message[1:]}'

@@ -1,0 +1,165 @@
+"""Read foreign files as tables: one table a run, columns by number or by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+import csv
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+import zipfile
+
+import numpy as np
+from numpy.typing import NDArray
+import scipy.io
+
+from tendon_ros.bags.mapping import Runs
+from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.recording import FloatArray
+
+
+@dataclass(frozen=True)
+class Table:
+    """
+    The columns of one run.
+
+    ``columns`` by name, in the order of the file, each shape (n,); ``header`` is the text that the
+    file keeps beside the run.
+    """
+
+    key: str
+    columns: Mapping[str, FloatArray]
+    header: str = ''
+    names: Sequence[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, 'names', tuple(self.columns))
+
+    def column(self, which: int | str, place: str) -> FloatArray:
+        """
+        Return a column.
+
+        :param which: its number from 0, or its name.
+        :param place: what asks for it, for the message.
+        :return: shape (n,).
+        :raises RecordingError: where there is none.
+        """
+        if isinstance(which, int) and which < len(self.names):
+            return self.columns[self.names[which]]
+        if isinstance(which, str) and which in self.columns:
+            return self.columns[which]
+        have = f'0 to {len(self.names) - 1}' if isinstance(which, int) else listed(self.names)
+        raise RecordingError(f'{place}: no column {which!r} in run {self.key}; it has {have}')
+
+
+def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[[], Table]]:
+    """
+    Find the runs of a file; each is unpacked only when it is asked for.
+
+    :param path: the foreign file.
+    :param kind: ``npz``, ``csv`` or ``mat``.
+    :param runs: which arrays are runs; None where the whole file is one.
+    :return: key → a function that reads the run.
+    :raises RecordingError: where the file cannot be read, or holds no run.
+    """
+    if not path.is_file():
+        raise RecordingError(f'{path}: no such file; give the file to import')
+    try:
+        arrays: Mapping[str, Any]
+        if kind == 'csv':
+            arrays = _read_csv(path)
+        elif kind == 'npz':
+            arrays = np.load(path, allow_pickle=False)
+            if not hasattr(arrays, 'files'):
+                raise ValueError('it holds a single array')
+        else:
+            found = scipy.io.loadmat(path, squeeze_me=True)
+            arrays = {name: value for name, value in found.items() if not name.startswith('__')}
+        names = list(arrays)
+    except (OSError, ValueError, TypeError, NotImplementedError, zipfile.BadZipFile) as error:
+        detail = ' '.join(str(error).split())
+        raise RecordingError(
+            f'{path}: not readable as {kind} ({detail}); check the format in the mapping'
+        ) from error
+    if runs is None:
+        return {path.stem: lambda: _one_run(path, arrays)}
+    keys = [
+        name
+        for name in names
+        if fnmatchcase(name, runs.include) and not fnmatchcase(name, runs.exclude)
+    ]
+    if not keys:
+        raise RecordingError(
+            f'{path}: no run matches runs.include {runs.include!r}; it has {listed(names)}'
+        )
+
+    def reader(key: str) -> Callable[[], Table]:
+        return lambda: _run(path, arrays, key, runs)
+
+    return {key: reader(key) for key in keys}
+
+
+def _numbers(path: Path, name: str, value: Any) -> FloatArray:
+    array: NDArray[Any] = np.asarray(value)
+    if array.dtype.kind not in 'fiub':
+        raise RecordingError(f'{path}: {name} holds {array.dtype}, not numbers; map another one')
+    return array.astype(np.float64)
+
+
+def _one_run(path: Path, arrays: Mapping[str, Any]) -> Table:
+    """Return a file in which each array is a column; what is not a column is left aside."""
+    columns = {}
+    for name in arrays:
+        array = np.asarray(arrays[name])
+        if array.ndim == 1 and array.dtype.kind in 'fiub':
+            columns[name] = array.astype(np.float64)
+    lengths = {array.size for array in columns.values()}
+    if len(lengths) > 1:
+        # Constants and look-up tables live beside the signals: the longest are the signals.
+        columns = {name: a for name, a in columns.items() if a.size == max(lengths)}
+    if not columns:
+        raise RecordingError(
+            f'{path}: no column of numbers among {listed(arrays)}; name the tables under runs'
+        )
+    return Table(path.stem, columns)
+
+
+def _run(path: Path, arrays: Mapping[str, Any], key: str, runs: Runs) -> Table:
+    """Return a run that is one table of the file."""
+    table = _numbers(path, key, arrays[key])
+    if table.ndim != 2 or not table.size:
+        raise RecordingError(
+            f'{path}: {key} has the shape {table.shape}; a run is a table, narrow runs.include'
+        )
+    name = runs.header.replace('{key}', key)
+    header = str(np.asarray(arrays[name])) if name and name in arrays else ''
+    return Table(key, {str(i): table[:, i] for i in range(table.shape[1])}, header)
+
+
+def _read_csv(path: Path) -> dict[str, FloatArray]:
+    """Return the columns of a CSV file, named by its first line where that is not numbers."""
+    with path.open(newline='', encoding='utf-8-sig') as stream:
+        rows = [row for row in csv.reader(stream) if row and not row[0].startswith('#')]
+    if not rows:
+        raise ValueError('it is empty')
+    try:
+        [float(cell) for cell in rows[0]]
+        names, first = [str(i) for i in range(len(rows[0]))], 0
+    except ValueError:
+        names, first = [cell.strip() for cell in rows[0]], 1
+    if len(set(names)) < len(names):
+        raise ValueError('two columns have the same name')
+    columns = np.full((len(rows) - first, len(names)), np.nan)
+    for i, row in enumerate(rows[first:]):
+        if len(row) != len(names):
+            raise ValueError(f'row {i + first + 1} has {len(row)} cells for {len(names)} columns')
+        for j, cell in enumerate(row):
+            if cell.strip():
+                try:
+                    columns[i, j] = float(cell)
+                except ValueError:
+                    raise ValueError(
+                        f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
+                    ) from None
+    return {name: columns[:, j] for j, name in enumerate(names)}
