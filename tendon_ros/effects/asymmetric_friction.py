@@ -10,7 +10,7 @@ Equation::
 The mean of the two acts like Coulomb friction; half of their difference acts like a torque bias
 that vanishes at rest.
 
-Source: Armstrong-Helouvry, "Control of Machines with Friction" (1991), measured on a PUMA arm.
+Source: Armstrong-Helouvry, "Control of Machines with Friction" (1991).
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ the pulley sticks rigidly, and the effect is Coulomb friction.
 
 Over small enough movements the bending gives energy back; over a closed cycle it never gives any.
 
-Source: Dahl, "A solid friction model", Aerospace Corporation TOR-158 (1968), with exponent one.
+Source: Dahl, "A solid friction model", Aerospace Corporation, TOR-0158 (1968), with exponent one.
 """
 
 from __future__ import annotations

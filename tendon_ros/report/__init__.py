@@ -1,0 +1,1 @@
+"""What is shown: tables, figures and pages made from results and from the code itself."""
