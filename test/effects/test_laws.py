@@ -200,7 +200,7 @@ def test_a_closed_cycle_takes_energy(effect, period, amplitude):
 
 
 def test_hysteresis_closes_the_loop_that_it_says():
-    """To and fro over 2 a, a cycle takes 4 * force * (a - elongation): the loop less its corners."""
+    """Over +-a, a cycle takes 4 * force * (a - elongation): the loop less its corners."""
     law = catalogue()['cable_hysteresis'].law
     amplitude, force, elongation = 1e-3, 2.0, 1e-5
     half = 20000  # steps
