@@ -1,0 +1,64 @@
+"""``tendon import``: foreign recordings as bags."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+import sys
+
+HELP = 'turn an npz, CSV or MAT file into bags, as a mapping file says'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare the arguments.
+
+    :param parser: of this verb.
+    """
+    parser.add_argument('file', metavar='FILE', help='npz, CSV or MAT file')
+    parser.add_argument('--mapping', required=True, metavar='MAP.yaml', help='what is what')
+    parser.add_argument(
+        '--out',
+        required=True,
+        metavar='DIR|BAG',
+        help='the bag where one run is imported; a folder of bags named by run where several are',
+    )
+    parser.add_argument(
+        '--select', nargs='+', default=[], metavar='KEY', help='only these runs of the file'
+    )
+    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
+    parser.add_argument('--namespace', default='/instrument', help='of the topics written')
+    parser.add_argument('--overwrite', action='store_true', help='replace bags that are there')
+
+
+def run(args: argparse.Namespace) -> None:
+    """
+    Write one bag a run.
+
+    :param args: parsed arguments.
+    """
+    from rich.console import Console
+    from rich.progress import track
+
+    from tendon_ros.bags.importing import import_runs, run_keys
+    from tendon_ros.bags.mapping import load_mapping
+    from tendon_ros.bags.writer import write_recording
+
+    mapping = load_mapping(args.mapping)
+    keys = list(dict.fromkeys(args.select)) or run_keys(args.file, mapping)
+    out = Path(args.out)
+    console = Console(stderr=True)
+    runs = import_runs(args.file, mapping, keys)
+    for recording in track(
+        runs, 'importing', total=len(keys), console=console, disable=not console.is_terminal
+    ):
+        for warning in recording.warnings:
+            print(f'warning: {warning}', file=sys.stderr)
+        path = write_recording(
+            recording,
+            out if len(keys) == 1 else out / recording.name,
+            namespace=args.namespace,
+            storage=args.storage,
+            overwrite=args.overwrite,
+        )
+        print(path, flush=True)
