@@ -33,7 +33,7 @@ EFFECT = Effect(
             neutral=0.0,
             low=0.0,
             high=0.05,
-            typical=0.01,
+            typical=0.003,
         ),
     ),
     modify=modify,
