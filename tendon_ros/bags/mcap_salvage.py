@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from contextlib import suppress
 from io import BytesIO
+import os
 from pathlib import Path
 import struct
 from typing import BinaryIO
@@ -23,8 +24,6 @@ import zstandard
 Record = Channel | Message | Metadata | Schema
 
 _MAGIC = b'\x89MCAP0\r\n'
-#: no record is larger; a damaged length is
-_LARGEST = 2**40
 _HEAD = struct.Struct('<BQ')
 _CHUNK = struct.Struct('<QQQI')
 _PLAIN = {
@@ -53,11 +52,14 @@ def salvage(path: Path) -> Iterator[Record | None]:
 def _walk(stream: BinaryIO, end: bytes) -> Generator[Record, None, bool]:
     """Yield the records of a stream; return whether they are whole and ``end`` follows them."""
     whole = True
+    start = stream.tell()
+    size = stream.seek(0, os.SEEK_END)
+    stream.seek(start)
     while head := stream.read(_HEAD.size):
         if len(head) < _HEAD.size:
             return whole and head == end
         opcode, length = _HEAD.unpack(head)
-        payload = stream.read(min(length, _LARGEST))
+        payload = stream.read(min(length, size - stream.tell()))
         complete = len(payload) == length
         whole = whole and complete
         if opcode == Opcode.CHUNK:

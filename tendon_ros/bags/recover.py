@@ -96,21 +96,30 @@ def _copy_mcap(path: Path, bag: BagWriter) -> bool:
             schemas[record.id] = record
         elif isinstance(record, Channel) and record.schema_id in schemas:
             schema = schemas[record.schema_id]
-            bag.add_topic(
-                record.topic,
-                schema.name,
-                _qos(record.metadata.get('offered_qos_profiles', '')),
-                definition=schema.data.decode(errors='replace'),
-                digest=record.metadata.get('topic_type_hash'),
-            )
-            topics[record.id] = record.topic
+            # What a damaged record announces may contradict an earlier one, which then holds.
+            with suppress(RecordingError):
+                bag.add_topic(
+                    record.topic,
+                    schema.name,
+                    _qos(record.metadata.get('offered_qos_profiles', '')),
+                    definition=schema.data.decode(errors='replace'),
+                    digest=record.metadata.get('topic_type_hash'),
+                )
+                topics[record.id] = record.topic
         elif isinstance(record, Message) and record.channel_id in topics:
             bag.write_raw(topics[record.channel_id], record.data, record.log_time)
         elif isinstance(record, Metadata) and record.name == 'rosbag2':
-            info = yaml.safe_load(record.metadata.get('serialized_metadata', '')) or {}
-            for key, value in (info.get('custom_data') or {}).items():
-                bag.set_metadata(str(key), str(value))
+            for key, value in _custom(record.metadata).items():
+                bag.set_metadata(key, value)
     return False
+
+
+def _custom(metadata: Mapping[str, str]) -> dict[str, str]:
+    """Return the text that the writer left, none where it is damaged."""
+    with suppress(yaml.YAMLError, AttributeError):
+        info = yaml.safe_load(metadata.get('serialized_metadata', '')) or {}
+        return {str(key): str(value) for key, value in (info.get('custom_data') or {}).items()}
+    return {}
 
 
 def _copy_sqlite(path: Path, bag: BagWriter) -> bool:

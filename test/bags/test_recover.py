@@ -1,0 +1,213 @@
+"""What is left of a bag whose writer was killed, or that was cut off."""
+
+from contextlib import suppress
+import signal
+import subprocess
+import sys
+
+from mcap.reader import make_reader
+from mcap.records import Message
+from mcap_ros2.decoder import DecoderFactory
+import numpy as np
+import pytest
+from rosbags.rosbag2 import Reader
+
+from tendon_ros.bags.bag_writer import BagWriter, SIDECAR
+from tendon_ros.bags.info import summarise
+from tendon_ros.bags.mcap_salvage import salvage
+from tendon_ros.bags.qos import offered_qos
+from tendon_ros.bags.reader import read_recording
+from tendon_ros.bags.recover import recover
+from tendon_ros.bags.writer import write_recording
+from tendon_ros.base.errors import RecordingError
+
+WRITE_UNTIL_KILLED = """
+import sys
+from tendon_ros.bags.bag_writer import BagWriter
+from tendon_ros.bags.messages import encode, typestore
+import numpy as np
+types = typestore().types
+bag = BagWriter(sys.argv[1], storage=sys.argv[2], metadata={'seed': '3'})
+bag.add_topic('/instrument/actuator/measured_js', 'sensor_msgs/msg/JointState')
+for i in range(10**9):
+    stamp = 10**9 + i * 2_000_000
+    message = types['sensor_msgs/msg/JointState'](
+        header=types['std_msgs/msg/Header'](
+            stamp=types['builtin_interfaces/msg/Time'](sec=stamp // 10**9, nanosec=stamp % 10**9),
+            frame_id=''),
+        name=['pulley_M'], position=np.array([float(i)]), velocity=np.empty(0),
+        effort=np.empty(0))
+    cdr = encode(message, 'sensor_msgs/msg/JointState')
+    bag.write_raw('/instrument/actuator/measured_js', cdr, stamp)
+    if i % 500 == 0:
+        print(i, flush=True)
+"""
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_killed_writer_loses_at_most_a_second(tmp_path, storage):
+    path = tmp_path / 'bag'
+    with subprocess.Popen(
+        [sys.executable, '-c', WRITE_UNTIL_KILLED, str(path), storage],
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        written = 0
+        while written < 3000:
+            written = int(process.stdout.readline())
+        process.send_signal(signal.SIGKILL)
+        rest = process.stdout.read().split()
+    written = int(rest[-1]) if rest else written
+    with pytest.raises(RecordingError, match=r'no metadata\.yaml.*tendon recover'):
+        read_recording(path)
+    before = {p.name: p.read_bytes() for p in path.iterdir()}
+
+    summary = recover(path, tmp_path / 'new')
+
+    assert summary.damaged
+    # 500 messages are the second that may be lost; the pipe tells of every 500th
+    assert summary.messages >= written - 500
+    recording = read_recording(tmp_path / 'new')
+    values = recording['actuator/pulley_M/position'].value
+    np.testing.assert_array_equal(values, np.arange(summary.messages))
+    assert recording.metadata['seed'] == '3'
+    assert {p.name: p.read_bytes() for p in path.iterdir()} == before
+
+
+def damage(recording, tmp_path, storage, share):
+    path = write_recording(recording, tmp_path / 'bag', storage=storage)
+    (file,) = [p for p in path.iterdir() if p.suffix in ('.mcap', '.db3')]
+    data = file.read_bytes()
+    file.write_bytes(data[: int(len(data) * share)])
+    (path / 'metadata.yaml').unlink()
+    return path
+
+
+@pytest.mark.parametrize('compress', [True, False])
+@pytest.mark.parametrize('share', [0.2, 0.5, 0.8, 0.95, 0.999])
+def test_a_cut_mcap_gives_what_lies_before_the_cut(recording, tmp_path, share, compress):
+    path = write_recording(recording, tmp_path / 'whole', compress=compress)
+    data = (path / 'whole.mcap').read_bytes()
+    (tmp_path / 'cut.mcap').write_bytes(data[: int(len(data) * share)])
+    total = sum(isinstance(record, Message) for record in salvage(path / 'whole.mcap'))
+    if compress and share < 0.5:
+        # half a second fits in one compressed block, of which a fifth gives nothing
+        return
+    summary = recover(tmp_path / 'cut.mcap', tmp_path / 'new')
+    assert summary.damaged
+    if not compress:
+        assert summary.messages >= 0.85 * share * total
+    back = read_recording(tmp_path / 'new')
+    for name, channel in back.channels.items():
+        n = channel.value.size
+        np.testing.assert_array_equal(channel.value, recording[name].value[:n])
+    if share > 0.99:
+        assert summary.messages == total
+
+
+@pytest.mark.parametrize('share', [0.9, 0.97])
+def test_a_cut_database_gives_what_lies_before_the_cut(recording, tmp_path, share):
+    path = damage(recording, tmp_path, 'sqlite3', share)
+    summary = recover(path, tmp_path / 'new')
+    assert summary.damaged
+    assert summary.messages > 100
+    for name, channel in read_recording(tmp_path / 'new').channels.items():
+        n = channel.value.size
+        np.testing.assert_array_equal(channel.value, recording[name].value[:n])
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_whole_bag_is_copied_whole(recording, tmp_path, storage):
+    path = write_recording(recording, tmp_path / 'bag', storage=storage)
+    summary = recover(path, tmp_path / 'new')
+    assert not summary.damaged
+    back = read_recording(tmp_path / 'new')
+    assert back.epoch_ns == recording.epoch_ns
+    assert back.metadata['note'] == 'θ'
+    for name, channel in recording.channels.items():
+        np.testing.assert_array_equal(back[name].value, channel.value)
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_topics_types_qos_and_foreign_definitions_are_kept(tmp_path, storage):
+    qos = offered_qos(3, reliable=False, latched=True)
+    bag = BagWriter(tmp_path / 'bag', storage=storage)
+    bag.add_topic('/state', 'my_msgs/msg/State', qos, definition='float64 value\n')
+    bag.write_raw('/state', b'\x00\x01\x00\x00' + b'\x00' * 8, 5)
+    bag.flush()
+    recover(tmp_path / 'bag', tmp_path / 'new')
+    bag.close()
+    with Reader(tmp_path / 'bag') as first, Reader(tmp_path / 'new') as second:
+        (one,), (other,) = first.connections, second.connections
+        assert one[1:7] == other[1:7]
+        assert other.ext.offered_qos_profiles == [qos]
+
+
+def test_an_independent_reader_opens_what_was_recovered(recording, tmp_path):
+    path = damage(recording, tmp_path, 'mcap', 0.98)
+    summary = recover(path, tmp_path / 'new')
+    with (tmp_path / 'new' / 'new.mcap').open('rb') as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        assert sum(1 for _ in reader.iter_decoded_messages()) == summary.messages
+
+
+@pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'garbage' * 100])
+def test_nothing_left_is_one_line_and_no_bag(tmp_path, content):
+    (tmp_path / 'x.mcap').write_bytes(content)
+    with pytest.raises(RecordingError, match='no message can be read'):
+        recover(tmp_path / 'x.mcap', tmp_path / 'new')
+    assert not (tmp_path / 'new').exists()
+
+
+def test_flipped_bytes_never_crash(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag') / 'bag.mcap'
+    data = bytearray(path.read_bytes())
+    rng = np.random.default_rng(0)
+    for i in range(20):
+        broken = bytearray(data)
+        for at in rng.integers(0, len(data), 30):
+            broken[at] ^= 0xFF
+        (tmp_path / 'broken.mcap').write_bytes(broken)
+        # most of the time something is left; where nothing is, it is said
+        with suppress(RecordingError):
+            recover(tmp_path / 'broken.mcap', tmp_path / f'new{i}')
+            summarise(tmp_path / f'new{i}')
+
+
+def test_an_existing_target_is_kept(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag')
+    with pytest.raises(RecordingError, match='exists'):
+        recover(path, path)
+    assert read_recording(path).warnings == ()
+
+
+def test_closing_removes_the_sidecar_and_counts(tmp_path):
+    with BagWriter(tmp_path / 'bag') as bag:
+        bag.add_topic('/a', 'std_msgs/msg/String')
+        assert (bag.path / SIDECAR).exists()
+        bag.write_raw('/a', b'\x00\x01\x00\x00\x01\x00\x00\x00\x00', 5)
+        assert bag.counts == {'/a': 1}
+        with pytest.raises(RecordingError, match='/b was not added'):
+            bag.write_raw('/b', b'', 6)
+        with pytest.raises(RecordingError, match='cannot become'):
+            bag.add_topic('/a', 'std_msgs/msg/Bool')
+        with pytest.raises(RecordingError, match='give its definition'):
+            bag.add_topic('/c', 'my_msgs/msg/Unknown')
+    bag.close()
+    assert sorted(p.name for p in bag.path.iterdir()) == ['bag.mcap', 'metadata.yaml']
+
+
+def test_a_bag_is_closed_when_its_context_fails(tmp_path):
+    with pytest.raises(ZeroDivisionError), BagWriter(tmp_path / 'bag') as bag:  # noqa: PT012
+        bag.add_topic('/a', 'std_msgs/msg/String')
+        bag.write_raw('/a', b'\x00\x01\x00\x00\x01\x00\x00\x00\x00', 5)
+        raise ZeroDivisionError
+    with Reader(tmp_path / 'bag') as reader:
+        assert reader.message_count == 1
+
+
+def test_a_bag_without_messages_is_finished(tmp_path):
+    with BagWriter(tmp_path / 'bag') as bag:
+        bag.add_topic('/a', 'std_msgs/msg/String')
+    with Reader(tmp_path / 'bag') as reader:
+        assert reader.message_count == 0

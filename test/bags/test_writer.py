@@ -1,0 +1,121 @@
+"""What is written reads back, by us and by an independent reader."""
+
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+import numpy as np
+import pytest
+import yaml
+
+from tendon_ros.bags import writer
+from tendon_ros.bags.reader import read_recording
+from tendon_ros.bags.writer import write_recording
+from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.recording import Channel, Recording
+
+
+def assert_same(one, other):
+    assert set(one.channels) == set(other.channels)
+    assert one.epoch_ns == other.epoch_ns
+    for name, channel in one.channels.items():
+        np.testing.assert_array_equal(other[name].time, channel.time, err_msg=name)
+        np.testing.assert_array_equal(other[name].value, channel.value, err_msg=name)
+        assert other[name].unit == channel.unit
+
+
+@pytest.mark.parametrize('out', ['bag', 'one.mcap', 'one.db3'])
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+@pytest.mark.parametrize('compress', [True, False])
+def test_a_recording_survives_bit_for_bit(recording, tmp_path, out, storage, compress):
+    path = write_recording(recording, tmp_path / out, storage=storage, compress=compress)
+    back = read_recording(path)
+    assert_same(recording, back)
+    assert back.warnings == ()
+    assert back.metadata['note'] == 'θ'
+    assert 'SI' in back.metadata['units']
+    assert 'positive' in back.metadata['sign_convention']
+    assert [entry.name for entry in tmp_path.iterdir()] == [out]
+
+
+def test_the_namespace_is_kept(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag', namespace='or/left')
+    assert read_recording(path).metadata['namespace'] == '/or/left'
+    assert read_recording(path, '/or/left/').channels.keys() == recording.channels.keys()
+
+
+def test_the_independent_reader_sees_the_contract(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag')
+    seen = {}
+    with (path / 'bag.mcap').open('rb') as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for schema, channel, message, decoded in reader.iter_decoded_messages():
+            stamp = decoded.header.stamp.sec * 10**9 + decoded.header.stamp.nanosec
+            assert message.log_time == stamp
+            assert 'reliable' in channel.metadata['offered_qos_profiles']
+            seen.setdefault((channel.topic, schema.name), []).append((stamp, decoded))
+    cell = seen['/instrument/load_cell/body/measured_cf', 'geometry_msgs/msg/WrenchStamped']
+    assert {m.header.frame_id for _, m in cell} == {'tip'}
+    force = [m.wrench.force.y for _, m in cell]
+    np.testing.assert_array_equal(force, recording['load_cell/force'].value)
+    assert not any(m.wrench.force.x or m.wrench.force.z or m.wrench.torque.x for _, m in cell)
+    motors = seen['/instrument/actuator/measured_js', 'sensor_msgs/msg/JointState']
+    m_only = [m for _, m in motors if list(m.name) == ['pulley_M']]
+    effort = [m.effort[0] for m in m_only]
+    np.testing.assert_array_equal(effort, recording['actuator/pulley_M/effort'].value)
+    assert all(len(m.velocity) == 0 for _, m in motors)
+    # a joint without effort travels apart: nobody reads an invented zero
+    l_only = [m for _, m in motors if list(m.name) == ['pulley_L']]
+    assert len(l_only) == 250
+    assert all(len(m.effort) == 0 for m in l_only)
+    stamps = [stamp for stamp, _ in motors]
+    assert stamps == sorted(stamps)
+
+
+def test_joints_with_equal_fields_share_a_message(recording, tmp_path):
+    both = Recording(
+        'both',
+        {n: recording[n] for n in ('actuator/pulley_M/position', 'actuator/pulley_L/position')},
+    )
+    path = write_recording(both, tmp_path / 'bag')
+    info = yaml.safe_load((path / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    assert info['version'] == 9
+    assert info['message_count'] == 250
+    (topic,) = info['topics_with_message_count']
+    (qos,) = topic['topic_metadata']['offered_qos_profiles']
+    assert (qos['reliability'], qos['depth'], qos['durability']) == ('reliable', 10, 'volatile')
+
+
+def test_an_existing_bag_is_kept_unless_allowed(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag')
+    with pytest.raises(RecordingError, match='exists'):
+        write_recording(recording, path)
+    write_recording(recording, path, overwrite=True)
+    assert_same(recording, read_recording(path))
+
+
+def test_no_half_bag_is_left_behind(recording, tmp_path, monkeypatch):
+    kept = write_recording(recording, tmp_path / 'kept')
+
+    def broken(batches):
+        yield from list(writer_order(batches))[:100]
+        raise OSError('disk full')
+
+    writer_order = writer._in_order
+    monkeypatch.setattr(writer, '_in_order', broken)
+    with pytest.raises(OSError, match='disk full'):
+        write_recording(recording, kept, overwrite=True)
+    assert [entry.name for entry in tmp_path.iterdir()] == ['kept']
+    assert_same(recording, read_recording(kept))
+
+
+def test_force_and_torque_at_different_stamps_are_refused(recording, tmp_path):
+    late = recording['load_cell/force']
+    moved = recording.with_channels([Channel('load_cell/torque', late.time + 0.001, late.value)])
+    with pytest.raises(RecordingError, match='different stamps'):
+        write_recording(moved, tmp_path / 'bag')
+    assert not list(tmp_path.iterdir())
+
+
+def test_stamps_before_1970_are_refused(tmp_path):
+    early = Channel('actuator/m/position', np.array([-1.0, 0.0]), np.zeros(2))
+    with pytest.raises(RecordingError, match='before 1970'):
+        write_recording(Recording('early', {early.name: early}), tmp_path / 'bag')
