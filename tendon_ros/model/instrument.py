@@ -92,7 +92,8 @@ class Motor:
     A motor on a pulley, perhaps through a rigid gear.
 
     ``gear_ratio``: turns of the rotor for one of the pulley; ``rotor_inertia`` [kg m^2] before the
-    gear; ``torque_limit`` [N m] at the pulley.
+    gear. At the pulley: ``torque_limit`` [N m]; ``speed_limit`` [rad/s] and ``position_limit``
+    [rad], lower and upper, of what may be commanded.
     """
 
     name: str
@@ -101,6 +102,8 @@ class Motor:
     gear_ratio: float = 1.0
     rotor_inertia: float = 0.0
     torque_limit: float = float('inf')
+    speed_limit: float = float('inf')
+    position_limit: tuple[float, float] = (float('-inf'), float('inf'))
 
 
 @dataclass(frozen=True)
@@ -109,9 +112,9 @@ class Contact:
     A one-sided stop that the instrument pushes against.
 
     ``route``: ratio by pulley, so that the contact's coordinate is ``sum(ratio * angle)`` [rad];
-    closed where it exceeds ``position`` [rad]. ``arm`` [m] from axis to contact point, ``stiffness``
-    [N/m]. ``law`` is ``spring_damper`` (force k x + d v while positive; ``damping`` [N s/m]) or
-    ``hunt_crossley`` (k x (1 + d v); ``damping`` [s/m]).
+    closed where it exceeds ``position`` [rad]. ``arm`` [m] from axis to contact point,
+    ``stiffness`` [N/m]. ``law`` is ``spring_damper`` (force k x + d v while positive; ``damping``
+    [N s/m]) or ``hunt_crossley`` (k x (1 + d v); ``damping`` [s/m]).
     """
 
     name: str
@@ -212,7 +215,7 @@ class Instrument:
 
         :return: shape (loops + couplings, pulleys): radii [m] for loops, ratios for couplings.
         """
-        rows = (*self.loops, *self.couplings)
+        rows: tuple[Loop | Coupling, ...] = (*self.loops, *self.couplings)
         matrix = np.zeros((len(rows), len(self.pulleys)))
         for k, row in enumerate(rows):
             for pulley, radius in row.route.items():

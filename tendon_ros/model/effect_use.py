@@ -1,0 +1,61 @@
+"""An effect in force at a place of an instrument, checked against the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tendon_ros.base.errors import EffectError, listed
+from tendon_ros.effects import find
+from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.layout import place_index
+from tendon_ros.model.quantity import parsed, written
+
+
+def checked_use(
+    instrument: Instrument, effect: str, place: str, parameters: Mapping[str, str | float]
+) -> EffectUse:
+    """
+    Return an effect at a place, all its parameters given and within their bounds.
+
+    :param instrument: where it is to act.
+    :param effect: the effect's id.
+    :param place: a place of the instrument, such as ``pulley_3``.
+    :param parameters: texts with units, or SI numbers; what is left out has no influence.
+    :return: the effect in use.
+    :raises EffectError: on an unknown effect, place or parameter, a place of the wrong kind, a
+        wrong unit or a value out of bounds; the message lists what exists.
+    """
+    known = find(effect)
+    kind, _ = place_index(instrument, place)
+    if kind not in known.kinds:
+        raise EffectError(
+            f'{effect} cannot act at {place}, a {kind}; it acts at {listed(known.kinds)}'
+        )
+    if kind == 'sensor':
+        [sensor] = [s for s in instrument.sensors if s.name == place]
+        if known.sensors and sensor.kind not in known.sensors:
+            raise EffectError(
+                f'{effect} cannot act at {place}, which measures {sensor.kind}; it acts at '
+                f'sensors of {listed(known.sensors)}'
+            )
+    values = dict(known.neutral)
+    for name in parameters:
+        if name not in values:
+            raise EffectError(f'{effect} has no parameter {name!r}; it has {listed(values)}')
+    for parameter in known.parameters:
+        if parameter.name not in parameters:
+            continue
+        given = parameters[parameter.name]
+        field = f'{effect} at {place}: {parameter.name}'
+        try:
+            value = parsed(given, parameter.unit) if isinstance(given, str) else float(given)
+        except ValueError as error:
+            raise EffectError(f'{field}: {error}') from None
+        if not parameter.low <= value <= parameter.high:
+            raise EffectError(
+                f'{field}: {given!r} is out of bounds; give '
+                f'{written(parameter.low, parameter.unit)} to '
+                f'{written(parameter.high, parameter.unit)}'
+            )
+        values[parameter.name] = value
+    return EffectUse(effect, place, values)

@@ -1,0 +1,201 @@
+"""From the instrument to the text of its file: readable quantities that are read back exactly."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import yaml
+
+from tendon_ros.effects import find
+from tendon_ros.model.instrument import Contact, Curve, EffectUse, Instrument, Loop, Motor, Sensor
+from tendon_ros.model.instrument_build import DAMPING_UNITS
+from tendon_ros.model.quantity import column_text, readable_unit, written
+
+Document = dict[str, Any]
+
+
+def text_of(instrument: Instrument) -> str:
+    """
+    Return the YAML of an instrument.
+
+    :param instrument: the instrument; its sensors must be such as a file can describe.
+    :return: the text, what has its default value left out.
+    """
+    return yaml.safe_dump(
+        _document(instrument),
+        sort_keys=False,
+        allow_unicode=True,
+        default_flow_style=None,
+        width=99,
+    )
+
+
+def curve_text(curve: Curve, comment: str) -> str:
+    """
+    Return the YAML of a curve's own file.
+
+    :param curve: the curve.
+    :param comment: where it comes from; written above it.
+    :return: the text.
+    """
+    above = ''.join(f'# {line}'.rstrip() + '\n' for line in comment.splitlines())
+    return above + yaml.safe_dump(
+        _curve(curve), sort_keys=False, default_flow_style=None, width=99
+    )
+
+
+def _curve(curve: Curve) -> Document:
+    document: Document = {}
+    for key, values, unit in (
+        ('elongation', curve.elongation, 'm'),
+        ('tension', curve.tension, 'N'),
+    ):
+        own = readable_unit(values, unit)
+        document[key] = {own: [float(column_text(v, own, unit)) for v in values]}
+    return document
+
+
+def _document(one: Instrument) -> Document:
+    sensors = {s.name: s for s in one.sensors}
+    document: Document = {
+        'name': one.name,
+        'description': one.description,
+        'pulleys': {
+            p.name: {
+                'inertia': written(p.inertia, 'kg*m^2'),
+                **_unless(0.0, damping=(p.damping, 'N*m*s/rad')),
+            }
+            for p in one.pulleys
+        },
+        'curves': {curve.name: _curve(curve) for curve in one.curves},
+        'loops': {loop.name: _loop(loop) for loop in one.loops},
+        'couplings': {
+            c.name: {
+                'route': dict(c.route),
+                'stiffness': written(c.stiffness, 'N*m/rad'),
+                **_unless(0.0, damping=(c.damping, 'N*m*s/rad')),
+            }
+            for c in one.couplings
+        },
+        'motors': {m.name: _motor(m, sensors) for m in one.motors},
+        'contacts': {c.name: _contact(c) for c in one.contacts},
+        'joint_sensors': {
+            s.of: _encoder(s, 1.0)
+            for s in one.sensors
+            if s.kind == 'angle' and s.of not in one.driven
+        },
+        'shaft_sensors': {
+            s.of: {'through': s.through, **_reading(s, 'N*m')}
+            for s in one.sensors
+            if s.kind == 'loop_torque'
+        },
+        'load_cell': _load_cell(sensors['load_cell']) if 'load_cell' in sensors else {},
+        'control': _control(one),
+        'effects': [_effect(use) for use in one.effects],
+    }
+    return {key: value for key, value in document.items() if value}
+
+
+def _unless(default: float, **values: tuple[float, str]) -> Document:
+    """Return quantities as text, without those that have the default value."""
+    return {key: written(v, unit) for key, (v, unit) in values.items() if v != default}
+
+
+def _loop(loop: Loop) -> Document:
+    document: Document = {
+        'route': {pulley: written(radius, 'm') for pulley, radius in loop.route.items()},
+        'curve': loop.curve,
+        'pretension': written(loop.pretension, 'N'),
+        **_unless(0.0, damping=(loop.damping, 'N*s/m')),
+    }
+    if loop.torque_sign:
+        document['torque_sign'] = {p: int(sign) for p, sign in loop.torque_sign.items()}
+    return document
+
+
+def _motor(motor: Motor, sensors: dict[str, Sensor]) -> Document:
+    gains = motor.controller
+    document: Document = {
+        'pulley': motor.pulley,
+        'controller': {
+            'kp': written(gains.kp, 'N*m/rad'),
+            'ki': written(gains.ki, 'N*m/(rad*s)'),
+            'kd': written(gains.kd, 'N*m*s/rad'),
+            'limit': written(gains.limit, 'N*m'),
+        },
+        **({} if motor.gear_ratio == 1.0 else {'gear_ratio': motor.gear_ratio}),
+        **_unless(0.0, rotor_inertia=(motor.rotor_inertia, 'kg*m^2')),
+        **_unless(
+            math.inf,
+            torque_limit=(motor.torque_limit, 'N*m'),
+            speed_limit=(motor.speed_limit, 'rad/s'),
+        ),
+    }
+    if all(map(math.isfinite, motor.position_limit)):
+        document['position_limit'] = [written(limit, 'rad') for limit in motor.position_limit]
+    encoder = sensors.get(f'encoder_{motor.pulley}')
+    torque = sensors.get(f'torque_{motor.name}')
+    document['encoder'] = _encoder(encoder, motor.gear_ratio) if encoder else {}
+    document['torque_sensor'] = _reading(torque, 'N*m') if torque else {}
+    return {key: value for key, value in document.items() if value != {}}
+
+
+def _reading(sensor: Sensor, unit: str) -> Document:
+    return _unless(0.0, resolution=(sensor.resolution, unit), noise=(sensor.noise, unit))
+
+
+def _encoder(sensor: Sensor, gear: float) -> Document:
+    """Return an encoder, its resolution as counts where they give exactly that."""
+    document = _reading(sensor, 'rad')
+    if sensor.resolution:
+        counts = round(2.0 * math.pi / gear / sensor.resolution)
+        if counts and 2.0 * math.pi / counts / gear == sensor.resolution:
+            del document['resolution']
+            document = {'counts': counts, **document}
+    return document
+
+
+def _contact(contact: Contact) -> Document:
+    return {
+        'route': dict(contact.route),
+        'arm': written(contact.arm, 'm'),
+        'stiffness': written(contact.stiffness, 'N/m'),
+        'law': contact.law,
+        **_unless(
+            0.0,
+            damping=(contact.damping, DAMPING_UNITS[contact.law]),
+            position=(contact.position, 'rad'),
+        ),
+        **({} if contact.enabled else {'enabled': False}),
+    }
+
+
+def _load_cell(sensor: Sensor) -> Document:
+    measures = sensor.kind.removeprefix('contact_')
+    unit = 'N' if measures == 'force' else 'N*m'
+    return {'contact': sensor.of, 'measures': measures, **_reading(sensor, unit)}
+
+
+def _control(one: Instrument) -> Document:
+    rate = 1.0 / one.control_period
+    exact = 1.0 / rate == one.control_period
+    if not one.continuous_control and exact:
+        return {'rate': written(rate, 'Hz')}
+    default = one.control_period == Instrument.control_period
+    period = {} if default else {'period': written(one.control_period, 's')}
+    return {'rate': 'continuous', **period} if one.continuous_control else period
+
+
+def _effect(use: EffectUse) -> Document:
+    units = {p.name: p.unit for p in find(use.effect).parameters}
+    return {
+        'effect': use.effect,
+        'place': use.place,
+        'parameters': {name: _value(v, units[name]) for name, v in use.parameters.items()},
+    }
+
+
+def _value(value: float, unit: str) -> str | float:
+    """Return a quantity as text, or as a plain number where it has no unit."""
+    return value if unit in {'', '1'} else written(value, unit)

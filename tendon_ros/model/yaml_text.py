@@ -1,0 +1,70 @@
+"""
+YAML as text: every scalar stays the text that the user wrote.
+
+So ``1e-3`` is not a string by accident, ``012`` not octal, a pulley called ``on`` not ``True``.
+What a text means is decided by the field that it fills. Keys given twice are an error.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from tendon_ros.base.errors import InstrumentError
+
+
+class _TextLoader(yaml.BaseLoader):
+    """PyYAML's loader that converts nothing, made to refuse a key given twice."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """
+        Return a mapping.
+
+        :param node: the parsed node.
+        :param deep: whether to construct its values at once.
+        :return: the mapping, keys as text.
+        :raises InstrumentError: on a key given twice, or that is no plain text.
+        """
+        seen: set[str] = set()
+        for key, _ in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, yaml.ScalarNode):
+                raise InstrumentError(f'line {line}: a key is not plain text; write `name: value`')
+            if key.value in seen:
+                raise InstrumentError(
+                    f'line {line}: {key.value}: is given twice; keep one of the two'
+                )
+            seen.add(key.value)
+        return super().construct_mapping(node, deep)
+
+
+def read_mapping(path: Path) -> dict[str, Any]:
+    """
+    Return a YAML file's top-level mapping with every scalar as text.
+
+    :param path: the file.
+    :return: nested dicts, lists and texts.
+    :raises InstrumentError: where the file cannot be read, is not YAML, or gives a key twice.
+    """
+    try:
+        text = path.read_text(encoding='utf-8')
+    except OSError as error:
+        raise InstrumentError(f'{path}: {error.strerror}; give an existing YAML file') from None
+    except UnicodeDecodeError:
+        raise InstrumentError(f'{path}: is not UTF-8 text; give a YAML file') from None
+    try:
+        document = yaml.load(text, _TextLoader)
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 0
+        raise InstrumentError(
+            f'{path}: line {line}: {error.problem}; mend the YAML there'
+        ) from None
+    except yaml.YAMLError as error:
+        raise InstrumentError(f'{path}: {str(error).splitlines()[0]}; mend the YAML') from None
+    except InstrumentError as error:
+        raise InstrumentError(f'{path}: {error}') from None
+    if not isinstance(document, dict):
+        raise InstrumentError(f'{path}: holds no `key: value` pairs at its top; give some')
+    return document
