@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import csv
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -11,6 +11,7 @@ from typing import Any
 import zipfile
 
 import numpy as np
+from numpy.lib.npyio import NpzFile
 from numpy.typing import NDArray
 import scipy.io
 
@@ -70,9 +71,7 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
         if kind == 'csv':
             arrays = _read_csv(path)
         elif kind == 'npz':
-            arrays = np.load(path, allow_pickle=False)
-            if not hasattr(arrays, 'files'):
-                raise ValueError('it holds a single array')
+            arrays = _Npz(path)
         else:
             found = scipy.io.loadmat(path, squeeze_me=True)
             arrays = {name: value for name, value in found.items() if not name.startswith('__')}
@@ -98,6 +97,31 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
         return lambda: _run(path, arrays, key, runs)
 
     return {key: reader(key) for key in keys}
+
+
+class _Npz(Mapping[str, Any]):
+    """The arrays of an npz file, each read when it is asked for; no file stays open."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        with self._open() as arrays:
+            self._names = tuple(arrays.files)
+
+    def _open(self) -> NpzFile:
+        arrays = np.load(self._path, allow_pickle=False)
+        if not isinstance(arrays, NpzFile):
+            raise ValueError('it holds a single array')
+        return arrays
+
+    def __getitem__(self, name: str) -> Any:
+        with self._open() as arrays:
+            return arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 def _numbers(path: Path, name: str, value: Any) -> FloatArray:

@@ -1,0 +1,290 @@
+"""Foreign files become recordings; mistakes in them or in the mapping are one clear line."""
+
+import numpy as np
+import pytest
+import scipy.io
+import yaml
+
+from tendon_ros.bags.export import export_csv
+from tendon_ros.bags.importing import import_runs, run_keys
+from tendon_ros.bags.mapping import factor, load_mapping
+from tendon_ros.bags.reader import read_recording
+from tendon_ros.bags.writer import write_recording
+from tendon_ros.base.errors import RecordingError
+
+N = 40
+TIME = np.arange(N) * 1e-3
+COUNTS = np.arange(N) * 10.0
+
+MAPPING = {
+    'format': 'npz',
+    'runs': {'include': '[0-9]', 'header': 'hdr_{key}'},
+    'time': {'column': 0, 'unit': 's'},
+    'channels': {
+        'actuator/motor/position': {
+            'column': 1,
+            'unit': 'turn / 4096',
+            'scale': 2.0,
+            'sign': -1,
+            'offset': 0.5,
+        },
+        'load_cell/force': {'column': 2, 'unit': 'gram_force'},
+    },
+    'metadata': {'tool': 'T5'},
+    'attribution': 'us',
+    'licence': 'ODbL 1.0',
+}
+
+
+def changed(**fields):
+    """Return the mapping with some fields replaced, or removed where None."""
+    return {k: v for k, v in {**MAPPING, **fields}.items() if v is not None}
+
+
+def mapping_file(tmp_path, data):
+    path = tmp_path / 'map.yaml'
+    path.write_text(data if isinstance(data, str) else yaml.safe_dump(data))
+    return path
+
+
+def imported(tmp_path, file, data, select=()):
+    return list(import_runs(file, load_mapping(mapping_file(tmp_path, data)), select))
+
+
+@pytest.fixture
+def npz(tmp_path):
+    path = tmp_path / 'runs.npz'
+    table = np.stack([TIME, COUNTS, COUNTS], axis=1)
+    np.savez(path, **{'1': table, '2': table[:20], 'hdr_1': 'first run', 'notes': 'no run'})
+    return path
+
+
+def expected():
+    return -2.0 * COUNTS * 2 * np.pi / 4096 + 0.5
+
+
+def test_runs_of_an_npz(npz, tmp_path):
+    one, two = imported(tmp_path, npz, MAPPING)
+    assert (one.name, two.name) == ('1', '2')
+    position = one['actuator/motor/position']
+    np.testing.assert_allclose(position.value, expected(), rtol=1e-14)
+    np.testing.assert_array_equal(position.time, np.round(TIME, 9))
+    np.testing.assert_allclose(one['load_cell/force'].value, COUNTS * 9.80665e-3, rtol=1e-14)
+    assert two['load_cell/force'].value.size == 20
+    assert one.metadata['source_header'] == 'first run'
+    assert one.metadata['licence'] == 'ODbL 1.0'
+    assert one.metadata['attribution'] == 'us'
+    assert 'source_header' not in two.metadata
+    assert one.epoch_ns == 10**9
+    assert one.warnings == ()
+
+
+def test_an_import_survives_the_bag_bit_for_bit(npz, tmp_path):
+    (run,) = imported(tmp_path, npz, MAPPING, ['1'])
+    back = read_recording(write_recording(run, tmp_path / 'bag'))
+    for name, channel in run.channels.items():
+        np.testing.assert_array_equal(back[name].time, channel.time)
+        np.testing.assert_array_equal(back[name].value, channel.value)
+    assert back.metadata['tool'] == 'T5'
+
+
+def test_selected_runs(npz, tmp_path):
+    mapping = load_mapping(mapping_file(tmp_path, MAPPING))
+    assert run_keys(npz, mapping) == ['1', '2']
+    assert [r.name for r in import_runs(npz, mapping, ['2'])] == ['2']
+    with pytest.raises(RecordingError, match=r'no run 7; it has 1, 2'):
+        list(import_runs(npz, mapping, ['7']))
+
+
+BY_NAME = {
+    'time': {'column': 't', 'unit': 'ms'},
+    'runs': None,
+    'channels': {
+        'actuator/motor/position': {
+            **MAPPING['channels']['actuator/motor/position'],
+            'column': 'motor',
+        }
+    },
+}
+
+
+@pytest.mark.parametrize('kind', ['npz', 'csv', 'mat'])
+def test_columns_by_name(tmp_path, kind):
+    columns = {'t': TIME * 1e3, 'motor': COUNTS, 'gain': np.array([3.0])}
+    path = tmp_path / f'one.{kind}'
+    if kind == 'npz':
+        np.savez(path, **columns)
+    elif kind == 'mat':
+        scipy.io.savemat(path, columns)
+    else:
+        rows = '\n'.join(
+            f'{a!r},{b!r}'
+            for a, b in zip(*(columns[k].tolist() for k in ('t', 'motor')), strict=True)
+        )
+        path.write_text(f'# a comment\nt, motor\n{rows}\n')
+    (run,) = imported(tmp_path, path, changed(format=kind, **BY_NAME))
+    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
+
+
+def test_runs_of_a_mat_file(tmp_path):
+    scipy.io.savemat(tmp_path / 'x.mat', {'run1': np.stack([TIME, COUNTS, COUNTS], axis=1)})
+    data = changed(format='mat', runs={'include': 'run*'})
+    (run,) = imported(tmp_path, tmp_path / 'x.mat', data)
+    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+
+
+def test_a_csv_without_names_and_a_rate(tmp_path):
+    np.savetxt(tmp_path / 'x.csv', np.stack([COUNTS, COUNTS], axis=1), delimiter=',')
+    channel = {**MAPPING['channels']['actuator/motor/position'], 'column': 1}
+    data = changed(
+        format='csv',
+        runs=None,
+        time={'rate': '1 kHz'},
+        channels={'actuator/motor/position': channel},
+        epoch='2020-01-01T00:00:00Z',
+    )
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', data)
+    np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
+    assert run.epoch_ns == 1_577_836_800 * 10**9
+
+
+def test_our_own_export_imports(npz, tmp_path):
+    (run,) = imported(tmp_path, npz, MAPPING, ['1'])
+    export_csv(run, tmp_path / 'x.csv')
+    channels = {
+        c.name: {'column': f'{c.name} [{c.unit}]', 'unit': c.unit} for c in run.channels.values()
+    }
+    data = changed(format='csv', runs=None, time={'column': 'time [s]'}, channels=channels)
+    (back,) = imported(tmp_path, tmp_path / 'x.csv', data)
+    for name, channel in run.channels.items():
+        np.testing.assert_array_equal(back[name].time, channel.time)
+        np.testing.assert_array_equal(back[name].value, channel.value)
+
+
+def test_bad_time_and_nan_are_left_out_and_told(tmp_path):
+    table = np.stack([TIME, COUNTS, COUNTS], axis=1)
+    table[5, 0] = table[4, 0]
+    table[8, 0] = table[2, 0]
+    table[11, 0] = np.nan
+    table[20, 1] = np.nan
+    table[30:, 0] += 0.5
+    np.savez(tmp_path / 'x.npz', **{'1': table})
+    (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
+    assert run['load_cell/force'].value.size == N - 3
+    assert run['actuator/motor/position'].value.size == N - 4
+    time, jitter, value = run.warnings
+    assert '3 of 40 rows left out' in time
+    assert 'first row 5' in time
+    assert '4 of 36 intervals' in jitter
+    assert 'actuator/motor/position' in value
+    assert 'first row 20' in value
+
+
+def test_a_column_of_nan_is_unmeasured(tmp_path):
+    table = np.stack([TIME, COUNTS, COUNTS * np.nan], axis=1)
+    np.savez(tmp_path / 'x.npz', **{'1': table})
+    (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
+    assert set(run.channels) == {'actuator/motor/position'}
+    assert 'unmeasured' in run.warnings[0]
+
+
+POSITION = MAPPING['channels']['actuator/motor/position']
+
+
+def with_position(**fields):
+    return changed(channels={'actuator/motor/position': {**POSITION, **fields}})
+
+
+@pytest.mark.parametrize(
+    ('data', 'words'),
+    [
+        ('', 'needs format'),
+        ('a: [', 'not YAML'),
+        (changed(format='hdf5'), 'format'),
+        (changed(format=None), 'format: missing'),
+        (changed(colour='red'), 'colour: unknown field; use attribution, channels'),
+        (changed(time={'column': 0, 'units': 's'}), 'time.units: unknown field; use column, rate'),
+        (changed(time={'column': 0, 'unit': 'N'}), 'time.unit'),
+        (changed(time={}), 'either a column or a rate'),
+        (changed(time={'column': 0, 'rate': '1 Hz'}), 'either a column or a rate'),
+        (changed(time={'rate': '-5 Hz'}), 'negative'),
+        (changed(time={'rate': '5 m'}), 'converts to Hz'),
+        (changed(channels={}), 'channels'),
+        (changed(channels={'motor/position': POSITION}), 'no topic carries it'),
+        (changed(channels={'load_cell/force': {'column': 1, 'unit': 'N'}}), 'of the motors'),
+        (with_position(unit='count'), 'names no angle'),
+        (with_position(unit='N m'), 'converts to rad'),
+        (with_position(unit='nonsense'), 'converts to rad'),
+        (with_position(sign=2), 'sign'),
+        (with_position(scale=0), 'must not be 0'),
+        (with_position(scale='fast'), 'scale'),
+        (with_position(offset=float('nan')), 'offset'),
+        (with_position(column=-1), 'column'),
+        (with_position(column=None), 'column'),
+        (with_position(factor=3), 'factor: unknown field; use column, offset'),
+        (changed(runs={'header': 'hdr'}), 'must hold {key}'),
+        (changed(format='csv'), 'a CSV file is one run'),
+        (changed(epoch='yesterday'), 'epoch'),
+        (changed(epoch='1950-01-01'), 'before 1970'),
+        (changed(metadata={'seed': 3}), 'metadata.seed'),
+    ],
+)
+def test_a_mistake_in_the_mapping_is_one_line(tmp_path, data, words):
+    path = mapping_file(tmp_path, data)
+    with pytest.raises(RecordingError) as caught:
+        load_mapping(path)
+    message = str(caught.value)
+    assert message.startswith(f'{path}: ')
+    assert words in message
+    assert '\n' not in message
+
+
+@pytest.mark.parametrize(
+    ('data', 'words'),
+    [
+        (with_position(column=9), 'no column 9 in run 1; it has 0 to 2'),
+        (with_position(column='x'), "no column 'x' in run 1; it has 0, 1, 2"),
+        (changed(runs={'include': 'q*'}), "no run matches runs.include 'q*'"),
+        (changed(runs={'include': 'notes'}), 'not numbers'),
+        (changed(runs=None), 'name the tables under runs'),
+        (changed(format='mat'), 'not readable as mat'),
+    ],
+)
+def test_a_file_that_does_not_fit_the_mapping_is_one_line(npz, tmp_path, data, words):
+    with pytest.raises(RecordingError) as caught:
+        imported(tmp_path, npz, data)
+    assert words in str(caught.value)
+    assert str(npz) in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ('', 'empty'),
+        ('t,motor\n1,2\n3\n', 'row 3 has 1 cells for 2 columns'),
+        ('t,motor\n1,x\n', "column motor: 'x' is not a number"),
+        ('t,t\n1,2\n', 'same name'),
+    ],
+)
+def test_a_bad_csv_is_one_line(tmp_path, text, words):
+    (tmp_path / 'x.csv').write_text(text)
+    with pytest.raises(RecordingError, match=words):
+        imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
+
+
+def test_a_missing_file_and_a_missing_mapping(tmp_path):
+    with pytest.raises(RecordingError, match='no such file'):
+        imported(tmp_path, tmp_path / 'x.npz', MAPPING)
+    with pytest.raises(RecordingError, match='cannot be read'):
+        load_mapping(tmp_path / 'none.yaml')
+
+
+def test_units():
+    assert factor('turn / (4096 * 35)', 'rad') == pytest.approx(2 * np.pi / (4096 * 35))
+    assert factor('3.9811e-5 N m', 'N m') == pytest.approx(3.9811e-5)
+    assert factor('rpm', 'rad/s') == pytest.approx(2 * np.pi / 60)
+    for text in ('1', 'count', '', 'N', 'rad/s'):
+        with pytest.raises(ValueError, match=r'names no angle|converts'):
+            factor(text, 'rad')
