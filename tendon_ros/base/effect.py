@@ -10,9 +10,11 @@ kernel understands: arithmetic, ``abs``, ``min``, ``max``, ``if``, functions of 
 ``budget(speed, side, load, *parameters) -> (limit, by_speed, by_load)``
     adds to the largest dry friction of a pulley [N m]; ``speed`` >= 0 [rad/s], ``side`` -1 or 1,
     ``load`` = sum of |radius| * (both tensions) over the loops on the pulley [N m].
-``elongation(delta, rate, z, t, *parameters) -> (shift, by_delta, by_z, z_rate, by_delta, by_rate, by_z)``
+``elongation(delta, rate, z, t, *parameters)
+-> (shift, by_delta, by_z, z_rate, by_delta, by_rate, by_z)``
     adds to a loop's elongation [m]; z is an auxiliary state of order one.
-``tension(delta, rate, z, t, *parameters) -> (force, by_delta, by_rate, by_z, z_rate, by_delta, by_rate, by_z)``
+``tension(delta, rate, z, t, *parameters)
+-> (force, by_delta, by_rate, by_z, z_rate, by_delta, by_rate, by_z)``
     adds to a loop's net force [N].
 ``winding(theta, *parameters) -> (arc, by_theta, by_theta_twice)``
     adds to the angle that the cables see [rad].
@@ -43,6 +45,9 @@ class Numbers(Protocol):
 
     ``model[name]`` is the array, for instance ``model['inertia']`` over pulleys.
     """
+
+    kind: str
+    """The kind of place that is being modified."""
 
     def __getitem__(self, name: str) -> Any:
         """Return the array of that name, to be changed in place."""

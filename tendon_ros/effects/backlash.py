@@ -19,19 +19,11 @@ Source: Nordin and Gutman, "Controlling mechanical systems with backlash - a sur
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from tendon_ros.base.effect import Effect, Numbers
 from tendon_ros.base.parameter import Parameter
 
 
-class NumbersAtPlace(Numbers, Protocol):
-    """Numbers that say at which ``kind`` of place they are being modified."""
-
-    kind: str
-
-
-def modify(numbers: NumbersAtPlace, index: int, angle: float) -> None:
+def modify(numbers: Numbers, index: int, angle: float) -> None:
     """Widen the play of a coupling, or of all that hangs on a motor's pulley."""
     if numbers.kind == 'coupling':
         numbers['play'][index] += angle

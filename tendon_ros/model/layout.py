@@ -201,6 +201,7 @@ class Numbers:
     """The numbers of a model by name, in the instrument's order: what effects may modify."""
 
     instrument: Instrument
+    kind: str = ''  # of the place that an effect is about to modify
     values: dict[str, FloatArray] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -343,7 +344,18 @@ class _Packer:
             raise EffectError(
                 f'{use.effect} cannot act at {use.place}: it acts at {listed(effect.kinds)}'
             )
+        if kind == 'sensor' and self.instrument.sensors[index].kind not in effect.sensors:
+            raise EffectError(
+                f'{use.effect} cannot act at {use.place}, a sensor of '
+                f'{self.instrument.sensors[index].kind}: it acts on {listed(effect.sensors)}'
+            )
         values = {**effect.neutral, **use.parameters}
+        unknown = set(use.parameters) - set(values)
+        if unknown:
+            raise EffectError(
+                f'{use.effect} at {use.place}: no parameter {sorted(unknown)[0]!r}; it has '
+                f'{listed(values)}'
+            )
         for parameter in effect.parameters:
             value = values[parameter.name]
             if not parameter.low <= value <= parameter.high:
@@ -351,13 +363,10 @@ class _Packer:
                     f'{use.effect} at {use.place}: {parameter.name} = {value:g} {parameter.unit} '
                     f'is outside {parameter.low:g} to {parameter.high:g}'
                 )
-        unknown = set(use.parameters) - set(values)
-        if unknown:
-            raise EffectError(
-                f'{use.effect} at {use.place}: no parameter {sorted(unknown)[0]!r}; it has '
-                f'{listed(values)}'
-            )
+        if all(values[p.name] == p.neutral for p in effect.parameters if not p.shapes_only):
+            return  # off costs nothing and changes nothing, not even the rounding
         if effect.modify is not None:
+            self.numbers.kind = kind
             effect.modify(self.numbers, index, **values)
         if effect.hook:
             if kind == 'motor':

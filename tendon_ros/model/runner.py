@@ -203,3 +203,59 @@ class Runner:
         written = int(self._carried[at['ROW']])
         table = np.array(rows, dtype=np.float64).reshape(-1, at['WIDTH_ROW'])[:written]
         return Rows(self.instrument, at, table)
+
+    def glide(self, end: float, signals: Signals) -> Rows:
+        """
+        Go on to a time that need not be a tick: for observers, which follow the stamps they get.
+
+        :param end: [s], after the present time.
+        :param signals: prescribed motion, torques and references.
+        :return: one row, at ``end``.
+        :raises SimulationError: where it diverges.
+        """
+        at = self.structure
+        row = self.engine.array(np.zeros(at['WIDTH_ROW']))
+        status = self.engine.module.glide(
+            self._m,
+            self._d,
+            self._work,
+            self._modes,
+            self.engine.array(signals.flat),
+            self._carried,
+            self._state,
+            end,
+            row,
+        )
+        if status != 0:
+            raise SimulationError(f'{self.instrument.name}: the model diverged near {end:.4f} s')
+        return Rows(self.instrument, at, np.array(row, dtype=np.float64).reshape(1, -1))
+
+    def place(self, angle: FloatArray, velocity: FloatArray) -> None:
+        """
+        Put the pulleys somewhere, memories unchanged.
+
+        :param angle: [rad], shape (pulleys,), in the instrument's order.
+        :param velocity: [rad/s], shape (pulleys,).
+        """
+        at = self.structure
+        n = at['N']
+        for i, own in enumerate(at.order):
+            self._state[i] = float(angle[own])
+            self._state[n + i] = float(velocity[own])
+
+    @property
+    def work(self) -> Any:
+        """The kernel's scratch, at the places that the structure names."""
+        return self._work
+
+    def weigh(self) -> None:
+        """Evaluate and linearise the forces where the pulleys are, without moving on."""
+        self.engine.module.weigh(
+            self._m,
+            self._d,
+            self._work,
+            self._modes,
+            self.engine.array(Signals.none().flat),
+            self._carried,
+            self._state,
+        )

@@ -387,3 +387,28 @@ def rollout(
     for n in range(2 * N + d[ACTIVE]):
         y[n] = w[START + n]
     return status
+
+
+def glide(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, y: Floats, end: float,
+    row: Floats,
+) -> int:  # fmt: skip
+    """Go on to time ``end``, torques held, and write one row there: for observers."""
+    begin(m, d, w, g, s, c, y)
+    status = advance(m, d, w, g, s, c, end, row, row, 1, 0)
+    c[ROW] = 0.0
+    record(m, d, w, c, end, row, 1, START)
+    linearise(m, d, w)
+    for n in range(2 * N + d[ACTIVE]):
+        y[n] = w[START + n]
+    return status
+
+
+def weigh(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, y: Floats
+) -> None:
+    """Evaluate and linearise at the state y without moving on, prescribed pulleys where y puts them."""
+    for n in range(2 * N + d[ACTIVE]):
+        w[START + n] = y[n]
+    evaluate(m, d, w, g, s, c, c[CLOCK], START)
+    linearise(m, d, w)

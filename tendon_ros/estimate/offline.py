@@ -1,0 +1,72 @@
+"""Estimation on a recording: the same observer, fed the same measurements as live."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from tendon_ros.base.errors import RecordingError, listed
+from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.estimate.observer import Measurement, Observer
+
+
+def measurements(recording: Recording, needs: tuple[str, ...]) -> Iterator[Measurement]:
+    """
+    Yield the measurements of a recording in the order of their stamps.
+
+    :param recording: with every channel that is needed.
+    :param needs: the channels.
+    :return: one measurement for each stamp at which all of them spoke.
+    :raises RecordingError: where a channel is missing, or they never speak together.
+    """
+    for name in needs:
+        if name not in recording:
+            raise RecordingError(
+                f'{recording.name}: no channel {name!r}, which this method needs; it has '
+                f'{listed(recording.channels)}'
+            )
+    stamps = [np.round(recording[name].time * 1e9).astype(np.int64) for name in needs]
+    common = stamps[0]
+    for other in stamps[1:]:
+        common = np.intersect1d(common, other, assume_unique=True)
+    if not common.size:
+        raise RecordingError(
+            f'{recording.name}: {", ".join(needs)} never carry the same stamp; resample them to '
+            'one clock on import'
+        )
+    columns = [
+        recording[name].value[np.searchsorted(own, common)]
+        for name, own in zip(needs, stamps, strict=True)
+    ]
+    for n, stamp in enumerate(common):
+        values = {name: float(column[n]) for name, column in zip(needs, columns, strict=True)}
+        yield Measurement(recording.epoch_ns + int(stamp), values)
+
+
+def estimate_recording(
+    recording: Recording, observer: Observer, progress: Callable[[float], None] | None = None
+) -> Recording:
+    """
+    Return a recording with the estimates added.
+
+    :param recording: what was measured.
+    :param observer: a fresh observer.
+    :param progress: called now and then with the part that is done, 0 to 1.
+    :return: the recording and the channels ``estimate/...``.
+    :raises RecordingError: where a needed channel is missing.
+    """
+    times: list[float] = []
+    columns: dict[str, list[float]] = {}
+    span = max(recording.end - recording.start, 1e-9)
+    for n, measurement in enumerate(measurements(recording, observer.needs)):
+        estimate = observer.update(measurement)
+        times.append((estimate.stamp_ns - recording.epoch_ns) * 1e-9)
+        for name, value in estimate.values.items():
+            columns.setdefault(name, []).append(value)
+        if progress is not None and n % 256 == 0:
+            progress((times[-1] - recording.start) / span)
+    channels = [
+        Channel(name, np.array(times), np.array(values)) for name, values in columns.items()
+    ]
+    return recording.with_channels(channels)

@@ -1,0 +1,238 @@
+"""
+Encoders and torques, no contact known: the angles and the force that balance the measured torques.
+
+Each measurement gives the angles of some pulleys and some torques. Unknown are the other angles
+and the operating force. The torques on every pulley must balance (the paper's (1)-(6) without
+inertia), and the measured torques must be met as well as their noise lets them: weighted least
+squares by Gauss-Newton, whose covariance is the stated uncertainty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.errors import InstrumentError, RecordingError, listed
+from tendon_ros.estimate.channels import (
+    angle_channel,
+    deviation,
+    estimated_angles,
+    operating_force,
+    sensors_of,
+)
+from tendon_ros.estimate.observer import Estimate, Measurement, Observer
+from tendon_ros.model.instrument import Instrument, Sensor
+from tendon_ros.model.statics import Balance, Statics
+
+FloatArray = NDArray[np.float64]
+
+#: balance of a pulley that no torque sensor sees: how exactly it must hold [N m]
+BALANCE = 1e-5
+#: a Newton step below this ends the search [rad]
+CLOSE = 1e-9
+#: most steps of one search
+TRIES = 60
+#: velocities for the direction of friction are smoothed over this time [s]
+SMOOTHING = 0.02
+#: prior deviation of an angle about the last one; keeps what no channel sees where it was [rad]
+WANDER = 1.0
+
+
+class StaticBalanceObserver(Observer):
+    """
+    Solves the balance of torques at every measurement.
+
+    :param instrument: the network.
+    :param channels: channels to use; the motors' positions and efforts where None.
+    :param engine: ``auto``, ``compiled`` or ``plain``.
+    :raises InstrumentError: where the channels cannot determine the operating force.
+    """
+
+    def __init__(
+        self,
+        instrument: Instrument,
+        *,
+        channels: Sequence[str] | None = None,
+        engine: str = 'auto',
+    ) -> None:
+        super().__init__()
+        self._instrument = instrument
+        self._operating = operating_force(instrument)
+        known = sensors_of(instrument, ('angle', 'motor_torque', 'loop_torque'))
+        if channels is None:
+            channels = [name for name in known if name.startswith('actuator/')]
+        for name in channels:
+            if name not in known:
+                raise InstrumentError(
+                    f'{instrument.name}: no sensor gives {name!r}; it has {listed(known)}'
+                )
+        self.needs = tuple(channels)
+        self._angles = [
+            (name, instrument.index(known[name].of))
+            for name in channels
+            if known[name].kind == 'angle'
+        ]
+        self._torques = [(name, known[name]) for name in channels if known[name].kind != 'angle']
+        if not self._angles or not self._torques:
+            raise InstrumentError(
+                f'{instrument.name}: this method needs at least one angle and one torque; the '
+                f'channels chosen are {listed(channels)}'
+            )
+        fixed = {i for _, i in self._angles}
+        self._free = [i for i in range(len(instrument.pulleys)) if i not in fixed]
+        self._sigma_angle = np.array([deviation(known[name]) for name, _ in self._angles])
+        self._statics = Statics(instrument, engine=engine)
+        self._plan_rows()
+        self._reset()
+
+    def _plan_rows(self) -> None:
+        """Settle which pulleys must balance, and which torque is compared with which sensor."""
+        one = self._instrument
+        motors = {m.name: one.index(m.pulley) for m in one.motors}
+        measured = {motors[s.of] for _, s in self._torques if s.kind == 'motor_torque'}
+        unknown = set(motors.values()) - measured
+        self._balanced = [
+            i for i in range(len(one.pulleys)) if i not in measured and i not in unknown
+        ]
+        rows = [row.name for row in (*one.loops, *one.couplings)]
+        self._seen: list[tuple[int, int, float]] = []  # kind 0 motor or 1 loop, index, deviation
+        for _, sensor in self._torques:
+            self._seen.append(self._seen_row(sensor, motors, rows))
+        self._arm = one.routing()
+        unknowns = len(self._free) + 1
+        if len(self._balanced) + len(self._seen) < unknowns:
+            raise InstrumentError(
+                f'{one.name}: {unknowns} unknowns (inner angles and the force) but only '
+                f'{len(self._balanced) + len(self._seen)} balances and torques; add a torque or '
+                'angle channel'
+            )
+
+    @staticmethod
+    def _seen_row(
+        sensor: Sensor, motors: dict[str, int], rows: Sequence[str]
+    ) -> tuple[int, int, float]:
+        if sensor.kind == 'motor_torque':
+            return 0, motors[sensor.of], deviation(sensor)
+        return 1, rows.index(sensor.through), deviation(sensor)
+
+    def _reset(self) -> None:
+        self._statics.reset()
+        self._angle = np.zeros(len(self._instrument.pulleys))
+        self._velocity = np.zeros(len(self._instrument.pulleys))
+        self._force = 0.0
+        self._begun = False
+
+    def _update(self, measurement: Measurement, gap: float) -> Estimate:
+        angle = self._angle.copy()
+        for name, i in self._angles:
+            angle[i] = measurement.values[name]
+        if not self._begun:
+            angle[self._free] = self._rigid(angle)
+        moving = self._begun and gap > 0.0
+        # velocity by angle, solved for along with the angle: taking the last one instead would
+        # feed a noisy angle back through the damping
+        self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
+        self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
+        force, covariance = self._solve(angle, measurement)
+        if moving:
+            self._velocity = self._moved(angle)
+            self._statics.carry(self._angle, angle, gap)
+        self._angle = angle
+        self._force = force
+        self._begun = True
+        sigma = float(np.sqrt(max(covariance[-1, -1], 0.0)))
+        values = {
+            self._operating.channel: force,
+            f'{self._operating.channel}_std': sigma,
+            **estimated_angles(self._instrument, angle),
+        }
+        return Estimate(measurement.stamp_ns, values)
+
+    def _moved(self, angle: FloatArray) -> FloatArray:
+        """Return the smoothed velocities [rad/s] if the angles now are these."""
+        return np.asarray(self._drift + self._pace * (angle - self._angle))
+
+    def _rigid(self, angle: FloatArray) -> FloatArray:
+        """Return the free angles that leave every cable as it is: where a search may begin."""
+        fixed = [i for i in range(len(angle)) if i not in self._free]
+        routing = self._instrument.routing()
+        found, *_ = np.linalg.lstsq(
+            routing[:, self._free], -routing[:, fixed] @ angle[fixed], rcond=None
+        )
+        return np.asarray(found)
+
+    def _solve(
+        self, angle: FloatArray, measurement: Measurement
+    ) -> tuple[float, FloatArray]:
+        """Find free angles (in place) and force; return the force and the covariance of both."""
+        force = self._force
+        start = angle[self._free].copy()
+        cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
+        for _ in range(TRIES):
+            move, *_ = np.linalg.lstsq(rows, -residual, rcond=None)
+            largest = float(np.abs(move[:-1]).max()) if len(move) > 1 else 0.0
+            if largest < CLOSE:
+                break
+            # the curve's knee and slack make a full step overshoot: shorten it until it helps
+            part = min(1.0, 0.05 / largest)
+            for _ in range(12):
+                trial = angle.copy()
+                trial[self._free] += part * move[:-1]
+                after = self._weighed(trial, start, force + part * move[-1], measurement)
+                if after[0] < cost:
+                    break
+                part *= 0.4
+            else:
+                break  # no shorter step helps: this is the minimum to rounding
+            angle[:] = trial
+            force += part * move[-1]
+            cost, residual, rows, by_fixed = after
+        else:
+            raise RecordingError(
+                f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
+                'or a sign may be wrong'
+            )
+        inverse = np.linalg.pinv(rows)
+        covariance = inverse @ inverse.T
+        through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
+        return force, covariance + through @ through.T
+
+    def _weighed(
+        self, angle: FloatArray, start: FloatArray, force: float, measurement: Measurement
+    ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
+        """Return cost, residuals with the prior's, their slopes, and slopes by measured angles."""
+        balance = self._statics.at(angle, self._moved(angle))
+        residual, slope, by_fixed = self._equations(balance, force, measurement)
+        prior = (angle[self._free] - start) / WANDER
+        residual = np.concatenate([residual, prior])
+        slope = np.vstack([slope, np.eye(len(self._free), len(self._free) + 1) / WANDER])
+        return float(residual @ residual), residual, slope, by_fixed
+
+    def _equations(
+        self, balance: Balance, force: float, measurement: Measurement
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return weighted residuals, and their slopes by unknowns and by the measured angles."""
+        fixed = [i for _, i in self._angles]
+        lever = self._operating.torque
+        stiffness = balance.stiffness + self._pace * balance.damping
+        torque = balance.torque + lever * force
+        residual, slope, by_fixed = [], [], []
+        for i in self._balanced:
+            residual.append(torque[i] / BALANCE)
+            slope.append(np.append(-stiffness[i, self._free], lever[i]) / BALANCE)
+            by_fixed.append(-stiffness[i, fixed] / BALANCE)
+        for (name, sensor), (kind, index, sigma) in zip(self._torques, self._seen, strict=True):
+            reading = measurement.values[name]
+            if kind == 0:
+                residual.append((torque[index] + reading) / sigma)
+                slope.append(np.append(-stiffness[index, self._free], lever[index]) / sigma)
+                by_fixed.append(-stiffness[index, fixed] / sigma)
+            else:
+                arm = self._arm[index, self._instrument.index(sensor.of)]
+                by_angle = arm * balance.loop_stiffness[index] * self._arm[index]
+                residual.append((arm * balance.loop_force[index] - reading) / sigma)
+                slope.append(np.append(by_angle[self._free], 0.0) / sigma)
+                by_fixed.append(by_angle[fixed] / sigma)
+        return np.array(residual), np.array(slope), np.array(by_fixed)
