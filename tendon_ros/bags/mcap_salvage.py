@@ -15,10 +15,10 @@ from pathlib import Path
 import struct
 from typing import BinaryIO
 
-import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
-from mcap.records import Channel, Message, Metadata, Schema
+from mcap.records import Channel, Chunk, Message, Metadata, Schema
+from mcap.stream_reader import get_chunk_data_stream
 import zstandard
 
 Record = Channel | Message | Metadata | Schema
@@ -100,17 +100,21 @@ def _unpack(payload: bytes) -> tuple[bytes, bool]:
     except (struct.error, UnicodeDecodeError):
         return b'', False
     packed = payload[start + 8 : start + 8 + length]
-    data = packed if not compression else _decompress(packed, compression)
+    data = packed
+    if compression == 'zstd':
+        data = _decompress(packed)
+    elif compression:
+        # Others come whole or not at all; rosbag2 itself writes none of them by default.
+        data = b''
+        with suppress(Exception):
+            stream, count = get_chunk_data_stream(Chunk.read(ReadDataStream(BytesIO(payload))))
+            data = stream.read(count)
     return data[:size], len(data) >= size
 
 
-def _decompress(packed: bytes, compression: str) -> bytes:
+def _decompress(packed: bytes) -> bytes:
     """Return as much as can be decompressed, piece by piece."""
-    unpacker = (
-        zstandard.ZstdDecompressor().decompressobj()
-        if compression == 'zstd'
-        else lz4.frame.LZ4FrameDecompressor()
-    )
+    unpacker = zstandard.ZstdDecompressor().decompressobj()
     out = bytearray()
     # The damage may sit anywhere: small pieces keep what comes before it.
     with suppress(Exception):

@@ -7,6 +7,7 @@ import sys
 
 from mcap.reader import make_reader
 from mcap.records import Message
+from mcap.writer import CompressionType, Writer
 from mcap_ros2.decoder import DecoderFactory
 import numpy as np
 import pytest
@@ -149,6 +150,19 @@ def test_an_independent_reader_opens_what_was_recovered(recording, tmp_path):
     with (tmp_path / 'new' / 'new.mcap').open('rb') as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         assert sum(1 for _ in reader.iter_decoded_messages()) == summary.messages
+
+
+def test_an_lz4_bag_of_another_writer_is_recovered(tmp_path):
+    with (tmp_path / 'x.mcap').open('wb') as stream:
+        writer = Writer(stream, compression=CompressionType.LZ4)
+        writer.start('ros2')
+        schema = writer.register_schema('std_msgs/msg/String', 'ros2msg', b'string data')
+        channel = writer.register_channel('/a', 'cdr', schema)
+        for i in range(10):
+            writer.add_message(channel, i, b'\x00\x01\x00\x00\x01\x00\x00\x00\x00', i)
+        writer.flush()
+    summary = recover(tmp_path / 'x.mcap', tmp_path / 'new')
+    assert (summary.damaged, summary.counts) == (True, {'/a': 10})
 
 
 @pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'garbage' * 100])
