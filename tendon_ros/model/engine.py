@@ -50,7 +50,10 @@ TYPES = {'Floats': 'float64[::1]', 'Ints': 'int64[::1]', 'float': 'float64', 'in
 _FLOAT = ast.Name('float')
 
 #: rounding may be reordered, but NaN and infinity keep their meaning: a divergence must be seen
-FASTMATH = "{'reassoc', 'contract', 'arcp', 'nsz'}"
+OPTIONS = (
+    "cache=True, nogil=True, error_model='numpy', "
+    "fastmath={'reassoc', 'contract', 'arcp', 'nsz'}"
+)
 
 
 def compiler_installed() -> bool:
@@ -131,7 +134,7 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
         if isinstance(node, ast.FunctionDef):
             lines.append('')
             if compiled:
-                lines.append(f'@njit(({_types(node)}), cache=True, nogil=True, fastmath={FASTMATH})')
+                lines.append(f'@njit(({_types(node)}), {OPTIONS})')
             _strip(node)
         lines.append(ast.unparse(node))
     return '\n'.join(lines) + '\n'

@@ -53,7 +53,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     'd': {
         'DRIVE': 'N', 'MOTION': 'N', 'PUSH': 'N', 'REFERENCE': 'U', 'ENCODER': 'U',
         'INTEGRAL': 'U', 'BRISTLE': 'N', 'DRY': 'N', 'CURVE_CELLS': 'M', 'CURVE_OFFSET': 'M',
-        'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'ACTIVE': '1',
+        'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1', 'ACTIVE': '1',
         'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1', 'SWITCH': '1',
         'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'TENSIONS': '2', 'WINDINGS': '2',
     },
@@ -409,6 +409,12 @@ class _Packer:
                      'motor_bias', 'motor_limit', 'sensor_gain', 'sensor_offset',
                      'sensor_delay', 'scale', 'loop_damping', 'play'):  # fmt: skip
             _put(m, at[name.upper()], numbers[name])
+        d[at['REMEMBERS']] = int((numbers['sensor_delay'] > 0.0).any())
+        if (numbers['sensor_delay'] > (RING - 2) * one.control_period).any():
+            raise EffectError(
+                f'{one.name}: a sensor is delayed by more than {RING - 2} controller periods '
+                f'({(RING - 2) * one.control_period:g} s), which is all that is remembered'
+            )
         _put(d, at['SENSOR_RECTIFIED'], numbers['sensor_rectified'] >= 0.5)
         _put(m, at['SENSOR_RESOLUTION'], [s.resolution for s in one.sensors])
         _put(m, at['SENSOR_NOISE'], [s.noise for s in one.sensors])

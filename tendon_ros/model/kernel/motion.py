@@ -14,6 +14,7 @@ from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, ARM, BREAKS, BUDGET, CLOCK, COMMAND, CONTACT_ARM, COUNT, DRAWN, DRIVE, DRY,
     ENCODER, EPOCH, F, FIRST, FORCE, GAP, INERTIA, INPUT, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY,
     M, MODE, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NEXT, PAST, PENDING, PERIOD, Q,
+    REMEMBERS,
     READING, REFERENCE, RING, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX, SENSOR_NOISE,
     SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SIDE, SLACK, SLACK_START,
     START, STEP, SUM, SWITCH, TENSION, TICK, TORQUE, TOUCH, TRIAL, TURN, U, WIDTH, WIDTH_ROW,
@@ -239,21 +240,28 @@ def record(
         rows[o + q] = c[READING + q]
 
 
+def ticks_ahead(d: Ints, c: Floats, every: int) -> int:
+    """Return how many ticks to pass: to the next recorded one, unless a delayed sensor remembers."""
+    return 1 if d[REMEMBERS] == 1 else every - int(c[TICK]) % every
+
+
 def report(
     m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, h: float,
     noise: Floats, rows: Floats, every: int,
 ) -> None:  # fmt: skip
     """Record the ticks that the step just taken has passed, from its dense output."""
-    due_at = (c[TICK] + 1.0) * m[PERIOD]
+    ahead = ticks_ahead(d, c, every)
+    due_at = (c[TICK] + ahead) * m[PERIOD]
     while due_at <= t + h + SMALLEST:
         part = min((due_at - t) / h, 1.0)
         between(d, w, part, TRIAL)
         prescribe(m, d, w, s, due_at, TRIAL)
         evaluate(m, d, w, g, s, c, due_at, TRIAL)
-        c[TICK] += 1.0
+        c[TICK] += ahead
         sense(m, d, w, c, noise, TRIAL)
         record(m, d, w, c, due_at, rows, every, TRIAL)
-        due_at = (c[TICK] + 1.0) * m[PERIOD]
+        ahead = ticks_ahead(d, c, every)
+        due_at = (c[TICK] + ahead) * m[PERIOD]
 
 
 def advance(
@@ -366,8 +374,9 @@ def rollout(
     if smoothly == 1:
         sense(m, d, w, c, noise, START)
         record(m, d, w, c, c[CLOCK], rows, every, START)
-        end = (c[TICK] + ticks) * m[PERIOD]
-        status = advance(m, d, w, g, s, c, end, noise, rows, every, 1)
+        last = c[TICK] + ticks
+        status = advance(m, d, w, g, s, c, last * m[PERIOD], noise, rows, every, 1)
+        c[TICK] = last
     else:
         for n in range(ticks):
             sense(m, d, w, c, noise, START)

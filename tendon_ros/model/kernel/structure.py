@@ -97,6 +97,7 @@ CURVE_OFFSET: int  # M: where in m the four coefficients of each cell begin
 CONTACT_LAW: int  # K: 0 spring and damper, 1 Hunt-Crossley
 CONTACT_ON: int  # K
 SENSOR_RECTIFIED: int  # Q
+REMEMBERS: int  # 1 where some sensor is delayed
 ACTIVE: int  # number of auxiliary states in use
 STATE_LOOP: int  # STATES: the loop that a state belongs to, or -1
 STATE_PULLEY: int  # STATES: the pulley that a state belongs to, or -1
