@@ -26,8 +26,9 @@ REQUIRES = [
     'pydantic>=2.5.0',
     'pyyaml>=6.0.1',
     'rich>=13.7.1',
-    'rosbags>=0.10.4',
+    'rosbags>=0.11.9',
     'scipy>=1.11.4',
+    'zstandard>=0.22.0',
 ]
 FAST = ['numba>=0.59.0']
 ROS = ['ros-jazzy-rclpy[fastrtps]>=7.1.6', 'ros-jazzy-common-interfaces>=5.3.6']

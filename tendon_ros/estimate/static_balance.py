@@ -9,7 +9,7 @@ squares by Gauss-Newton, whose covariance is the stated uncertainty.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,8 @@ class StaticBalanceObserver(Observer):
     Solves the balance of torques at every measurement.
 
     :param instrument: the network.
-    :param channels: channels to use; the motors' positions and efforts where None.
+    :param channels: channels to use; where None the motors' positions and efforts, or those of
+        the shafts where no motor tells its torque.
     :param engine: ``auto``, ``compiled`` or ``plain``.
     :raises InstrumentError: where the channels cannot determine the operating force.
     """
@@ -62,7 +63,7 @@ class StaticBalanceObserver(Observer):
         self._operating = operating_force(instrument)
         known = sensors_of(instrument, ('angle', 'motor_torque', 'loop_torque'))
         if channels is None:
-            channels = [name for name in known if name.startswith('actuator/')]
+            channels = self._usual(known)
         for name in channels:
             if name not in known:
                 raise InstrumentError(
@@ -86,6 +87,16 @@ class StaticBalanceObserver(Observer):
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
         self._reset()
+
+    @staticmethod
+    def _usual(known: Mapping[str, Sensor]) -> Sequence[str]:
+        """Return the motors' own channels, or where they tell no torque those of the shafts."""
+        motors = [name for name in known if name.startswith('actuator/')]
+        if any(known[name].kind == 'motor_torque' for name in motors):
+            return motors
+        shafts = [name for name, s in known.items() if s.kind == 'loop_torque']
+        turned = {known[name].of for name in shafts}
+        return shafts + [n for n, s in known.items() if s.kind == 'angle' and s.of in turned]
 
     def _plan_rows(self) -> None:
         """Settle which pulleys must balance, and which torque is compared with which sensor."""

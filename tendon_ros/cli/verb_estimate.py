@@ -1,0 +1,87 @@
+"""``tendon estimate``: the operating force from a bag, the numbers that the live node gives."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+HELP = 'estimate the operating force and the inner pulleys from a bag'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare the arguments.
+
+    :param parser: of this verb.
+    """
+    parser.add_argument('bag', nargs='+', metavar='BAG', help='folder, .mcap or .db3 file')
+    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    parser.add_argument(
+        '--out',
+        required=True,
+        metavar='BAG_OR_CSV',
+        help='bag or .csv to write; a folder for them where there are several bags',
+    )
+    parser.add_argument(
+        '--method',
+        default='static_balance',
+        help='static_balance (default), contact_angle or dynamic; see docs/estimation.md',
+    )
+    parser.add_argument(
+        '--channels',
+        metavar='A,B,...',
+        help='for static_balance: the channels to use, such as pulley/pulley_spindle/effort',
+    )
+    parser.add_argument('--namespace', help='of the instrument, where a bag has several')
+    parser.add_argument('--overwrite', action='store_true', help='replace what is there')
+
+
+def run(args: argparse.Namespace) -> None:
+    """
+    Estimate, write, and compare with the load cell where there is one.
+
+    :param args: parsed arguments.
+    """
+    import numpy as np
+
+    from tendon_ros.bags.export import export_csv
+    from tendon_ros.bags.reader import read_recording
+    from tendon_ros.bags.writer import write_recording
+    from tendon_ros.base.errors import RecordingError
+    from tendon_ros.cli.progress import shown
+    from tendon_ros.estimate import build, estimate_recording
+    from tendon_ros.estimate.score import scored
+    from tendon_ros.model.instrument_file import load_instrument
+
+    instrument = load_instrument(args.instrument)
+    channels = args.channels.split(',') if args.channels else None
+    build(instrument, args.method, channels=channels)  # a mistake is told before any bag is read
+    squares, samples = 0.0, 0
+    for bag in args.bag:
+        out = Path(args.out)
+        if len(args.bag) > 1:
+            out = out / Path(bag).name
+        if out.exists() and not args.overwrite:
+            raise RecordingError(f'{out}: exists; give another path or --overwrite')
+        recording = read_recording(bag, args.namespace)
+        with shown(f'estimating {recording.name}') as progress:
+            observer = build(instrument, args.method, channels=channels)
+            estimated = estimate_recording(recording, observer, progress)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        if out.suffix == '.csv':
+            export_csv(estimated, out)
+        else:
+            write_recording(estimated, out, overwrite=args.overwrite)
+        score = scored(estimated)
+        if score is None:
+            print(f'{out}: no load cell in the bag to compare with')
+            continue
+        squares += score.samples * score.rmse**2
+        samples += score.samples
+        print(
+            f'{out}: {score.quantity} RMSE {score.rmse:.4g} {score.unit}, bias {score.bias:+.4g}, '
+            f'range {score.span:.4g}; {score.coverage:.0%} within two standard deviations',
+            flush=True,
+        )
+    if samples and len(args.bag) > 1:
+        print(f'all {len(args.bag)} bags: RMSE {np.sqrt(squares / samples):.4g} {score.unit}')
