@@ -1,0 +1,1 @@
+"""The ROS 2 nodes: thin shells that declare, convert, call the core and publish."""

@@ -1,0 +1,40 @@
+"""``estimator``: the operating force and the inner pulleys from what the motors measure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import sys
+
+from tendon_ros.estimate import METHODS
+from tendon_ros.nodes.launcher import Program, start
+from tendon_ros.nodes.settings import Setting
+
+PROGRAM = Program(
+    name='estimator',
+    help='Estimate the operating force and the inner pulleys, a message for each measurement.',
+    settings=(
+        Setting('instrument', 'paper_rig', 'instrument file, or name of an installed one'),
+        Setting(
+            'method',
+            'contact_angle',
+            '; '.join(f'{name}: {text}' for name, text in METHODS.items()),
+            choices=tuple(METHODS),
+        ),
+        Setting('engine', 'auto', 'how the physics runs', choices=('auto', 'compiled', 'plain')),
+    ),
+    made_by='estimator_node:EstimatorNode',
+)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """
+    Run the node.
+
+    :param argv: arguments; None for those of the process.
+    :return: the exit status.
+    """
+    return start(PROGRAM, argv)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

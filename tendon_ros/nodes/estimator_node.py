@@ -1,0 +1,137 @@
+"""The node behind ``estimator``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+import math
+import time
+from typing import TypeAlias
+
+from geometry_msgs.msg import WrenchStamped
+import numpy as np
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from tendon_ros.bags.topics import JOINT_TOPICS, place_of
+from tendon_ros.base.errors import TendonError
+from tendon_ros.estimate import build, Estimate, Measurement, Observer, Synchroniser
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.nodes.broadcast import Broadcast
+from tendon_ros.nodes.conversions import from_stamp, values_of
+from tendon_ros.nodes.diagnostics import Level
+from tendon_ros.nodes.estimator import PROGRAM
+from tendon_ros.nodes.settings import Value
+from tendon_ros.nodes.tendon_node import TendonNode
+
+Message: TypeAlias = JointState | WrenchStamped
+
+#: measurements this old are no longer called live [s]
+STALE = 1.0
+
+
+class EstimatorNode(TendonNode):
+    """
+    Publishes an estimate for every measurement, with the measurement's stamp.
+
+    :param given: parameters that the command line sets.
+    """
+
+    def __init__(self, given: Mapping[str, Value]) -> None:
+        super().__init__(PROGRAM.name, given)
+        values = self.declare(PROGRAM.settings)
+        self.refuse_unknown_parameters()
+        instrument = load_instrument(str(values['instrument']))
+        self._method = str(values['method'])
+        self.get_logger().info(
+            f'preparing {self._method} for {instrument.name}; the first start of a network may '
+            'compile for some twenty seconds'
+        )
+        start = time.monotonic()
+        self._observer: Observer = build(instrument, self._method, engine=str(values['engine']))
+        self._together = Synchroniser(self._observer.needs)
+        self._broadcast = Broadcast(self)
+        self._last_ns: int | None = None
+        self._arrived = -math.inf
+        self._estimated = 0
+        self._counted_at = time.monotonic()
+        topics = sorted({place_of(channel)[0] for channel in self._observer.needs})
+        for topic in topics:
+            kind = JointState if topic in JOINT_TOPICS else WrenchStamped
+            self.create_subscription(kind, topic, self._hearer(topic, instrument), 10)
+        self.create_service(Trigger, '~/reset', self._on_reset)
+        self.get_logger().info(
+            f'ready after {time.monotonic() - start:.1f} s, listening to {", ".join(topics)}'
+        )
+
+    def health(self) -> tuple[Level, str, Mapping[str, object]]:
+        """Return whether measurements come, and how late they are."""
+        now = time.monotonic()
+        rate = self._estimated / (now - self._counted_at)
+        self._estimated, self._counted_at = 0, now
+        details: dict[str, object] = {
+            'method': self._method,
+            'estimates [Hz]': rate,
+            'incomplete measurements': self._together.dropped,
+        }
+        if self._last_ns is not None:
+            details['age of the last stamp [s]'] = time.time_ns() * 1e-9 - self._last_ns * 1e-9
+        if now - self._arrived > STALE:
+            ever = 'no measurement yet' if self._last_ns is None else 'no measurement any more'
+            return Level.STALE, f'{ever}; it needs {", ".join(self._observer.needs)}', details
+        return Level.OK, f'estimating by {self._method}', details
+
+    def _hearer(self, topic: str, instrument: Instrument) -> Callable[[Message], None]:
+        """Return the callback of a topic of measurements."""
+        motors = JOINT_TOPICS.get(topic) in {'actuator', 'setpoint'}
+        joints = [f'pulley_{name}' for name in (instrument.driven if motors else instrument.inner)]
+
+        def on_message(message: Message) -> None:
+            try:
+                values = values_of(topic, message, joints)
+                bad = [n for n in values if n in self._observer.needs and not _finite(values[n])]
+                if bad:
+                    self.complain('values not finite', f'{bad[0]} is {values[bad[0]]}; left out')
+                    return
+                measurement = self._together.add(from_stamp(message.header.stamp), values)
+                if measurement is not None:
+                    self._take(measurement)
+            except TendonError as error:
+                self.complain('measurements left out', f'{topic}: {error}')
+
+        return on_message
+
+    def _take(self, measurement: Measurement) -> None:
+        """Publish what a measurement says; the observer refuses stamps that step back."""
+        if self._last_ns is not None and measurement.stamp_ns <= self._last_ns:
+            back = (self._last_ns - measurement.stamp_ns) * 1e-9
+            self.complain(
+                'stamps that step back',
+                f'stamp {measurement.stamp_ns} ns lies {back:.6f} s before the last one; left '
+                f'out; call {self.get_fully_qualified_name()}/reset to begin anew',
+            )
+            return
+        estimate = self._observer.update(measurement)
+        self._last_ns = measurement.stamp_ns
+        self._arrived = time.monotonic()
+        self._publish(estimate)
+
+    def _publish(self, estimate: Estimate) -> None:
+        finite = {name: value for name, value in estimate.values.items() if _finite(value)}
+        for name in estimate.values.keys() - finite.keys():
+            self.complain('estimates not finite', f'{name} is not a finite number; not published')
+        stamps = np.array([estimate.stamp_ns], dtype=np.int64)
+        self._broadcast.publish(stamps, {name: np.array([finite[name]]) for name in finite})
+        self._estimated += 1
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._observer.reset()
+        self._together = Synchroniser(self._observer.needs)
+        self._last_ns = None
+        response.success = True
+        response.message = 'begins anew with the next measurement'
+        return response
+
+
+def _finite(value: float) -> bool:
+    return math.isfinite(value)

@@ -1,0 +1,57 @@
+"""How much simulated time is due: physics follows the elapsed time, whatever the loop does."""
+
+from __future__ import annotations
+
+
+class Pace:
+    """
+    Counts the controller periods that are due.
+
+    A loop that wakes late gets the periods that it missed, up to ``most``; what is beyond is given
+    up, simulated time then falls behind by that, and nothing else changes.
+
+    :param period: of the controllers [s].
+    :param most: how much time may be made up for at once [s].
+    """
+
+    def __init__(self, period: float, most: float = 0.1) -> None:
+        self._period = period
+        self._most = most
+        self._origin: float | None = None
+        self._done = 0
+        #: simulated time given up since the start [s]
+        self.slipped = 0.0
+
+    def due(self, now: float) -> int:
+        """
+        Return how many periods to run, and count them as run.
+
+        :param now: a steady clock [s].
+        :return: periods; the first call gives one, the period that begins now.
+        """
+        if self._origin is None:
+            self._origin = now
+        # A clock read a rounding error early must not cost a whole period.
+        ticks = int((now - self._origin) / self._period + 1e-6) + 1 - self._done
+        most = max(int(self._most / self._period), 1)
+        if ticks > most:
+            lost = (ticks - most) * self._period
+            self.slipped += lost
+            self._origin += lost
+            ticks = most
+        self._done += max(ticks, 0)
+        return max(ticks, 0)
+
+    def wait(self, now: float, every: int) -> float:
+        """
+        Return how long to sleep until the next period that is a multiple of ``every``.
+
+        :param now: the same clock [s].
+        :param every: periods.
+        :return: [s], not below zero.
+        """
+        if self._origin is None:
+            return 0.0
+        # Period n is run when n + 1 are counted, so the next one to publish is at or after `done`.
+        following = -(-self._done // every) * every
+        return max(self._origin + following * self._period - now, 0.0)

@@ -1,0 +1,185 @@
+"""The node behind ``recorder``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+import json
+import platform
+import time
+from typing import Any
+
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+from rclpy.utilities import get_rmw_implementation_identifier
+
+from tendon_ros import __version__
+from tendon_ros.bags.bag_writer import BagWriter
+from tendon_ros.bags.qos import offered_qos
+from tendon_ros.bags.topics import TOPIC_TYPES
+from tendon_ros.base.errors import RecordingError
+from tendon_ros.nodes.diagnostics import Level
+from tendon_ros.nodes.drops import Drops
+from tendon_ros.nodes.parameter_census import ParameterCensus
+from tendon_ros.nodes.recorder import PROGRAM
+from tendon_ros.nodes.settings import Value
+from tendon_ros.nodes.tendon_node import TendonNode
+
+#: topics of the instrument beside those that carry channels; the last two are commands
+ALSO: Mapping[str, str] = {
+    'operating_state': 'crtk_msgs/msg/OperatingState',
+    'actuator/servo_jp': 'sensor_msgs/msg/JointState',
+    'actuator/move_jp': 'sensor_msgs/msg/JointState',
+}
+#: topics of the whole system: changes of parameters, and how well nodes are
+SYSTEM: Mapping[str, str] = {
+    '/parameter_events': 'rcl_interfaces/msg/ParameterEvent',
+    '/diagnostics': 'diagnostic_msgs/msg/DiagnosticArray',
+}
+#: a burst that the writer may be late for, in messages
+DEPTH = 1000
+
+
+class RecorderNode(TendonNode):
+    """
+    Writes messages as they were sent, without looking into them.
+
+    :param given: parameters that the command line sets.
+    """
+
+    def __init__(self, given: Mapping[str, Value]) -> None:
+        super().__init__(PROGRAM.name, given)
+        values = self.declare(PROGRAM.settings)
+        self.refuse_unknown_parameters()
+        self._duration = float(values['duration'])
+        self._drops = Drops()
+        self._began: float | None = None
+        self._parameters: dict[str, Mapping[str, object]] = {}
+        self._subscriptions_by_topic: dict[str, Subscription] = {}
+        self._refused: set[str] = set()
+        path = str(values['out']) or time.strftime('rosbag2_%Y_%m_%d-%H_%M_%S')
+        self._bag = BagWriter(
+            path,
+            storage='mcap' if values['storage'] == 'mcap' else 'sqlite3',
+            compress=bool(values['compress']),
+            metadata={
+                'origin': 'recorded by tendon_ros',
+                'namespace': self.get_namespace(),
+                'versions': json.dumps(_versions()),
+            },
+        )
+        own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
+        self._own = frozenset(own)
+        asked = [t for part in str(values['topics']).split(',') if (t := part.strip())]
+        self._extra = {self.resolve_topic_name(topic) for topic in asked} - own.keys()
+        for topic, kind in {**own, **SYSTEM}.items():
+            self._subscribe(topic, kind)
+        self._census = ParameterCensus(self, self._on_parameters)
+        self.every(0.5, self._look_around)
+        self.every(0.05, self._check_time)
+        self.get_logger().info(f'recording {self.get_namespace()} to {path}')
+
+    def close(self) -> None:
+        """Finish the bag."""
+        super().close()
+        if not hasattr(self, '_bag'):
+            return
+        self._bag.set_metadata('dropped', json.dumps(self._drops.lost))
+        self._bag.close()
+        lost = sum(self._drops.lost.values())
+        self.get_logger().info(
+            f'{self._bag.path}: {sum(self._bag.counts.values())} messages on '
+            f'{len(self._bag.counts)} topics, {lost} lost on the way'
+        )
+
+    def health(self) -> tuple[Level, str, Mapping[str, object]]:
+        """Return what was written and what was lost."""
+        lost = sum(self._drops.lost.values())
+        level = Level.WARN if lost else Level.OK
+        text = f'{lost} messages lost on the way' if lost else f'recording to {self._bag.path}'
+        return level, text, {'lost': lost, **self._bag.counts}
+
+    def _subscribe(self, topic: str, kind: str, *, reliable: bool = True) -> None:
+        """Record a topic from now on; its place in the bag is made by its first message."""
+        package, _, name = kind.partition('/msg/')
+        try:
+            message = getattr(import_module(f'{package}.msg'), name)
+        except (ImportError, AttributeError):
+            if topic in self._extra:
+                self._refuse(topic, f'{kind} is not installed')
+            return
+        qos = QoSProfile(
+            depth=DEPTH,
+            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        )
+        self._subscriptions_by_topic[topic] = self.create_subscription(
+            message, topic, self._writer_of(topic, kind), qos, raw=True
+        )
+
+    def _writer_of(self, topic: str, kind: str) -> Callable[[bytes, Mapping[str, Any]], None]:
+        """Return the callback of a topic."""
+
+        def on_message(cdr: bytes, info: Mapping[str, Any]) -> None:
+            if self.stopping.is_set() or topic in self._refused:
+                return
+            try:
+                if topic not in self._bag.counts:
+                    self._bag.add_topic(topic, kind, self._offered(topic))
+            except RecordingError as error:
+                self._refuse(topic, str(error))
+                return
+            if topic in self._own:
+                self._drops.note(topic, info.get('publication_sequence_number'))
+                self._began = self._began or time.monotonic()
+            try:
+                self._bag.write_raw(topic, cdr, info.get('received_timestamp') or time.time_ns())
+            except RecordingError as error:
+                self.failure = error
+                self.stopping.set()
+
+        return on_message
+
+    def _refuse(self, topic: str, why: str) -> None:
+        self._refused.add(topic)
+        self.get_logger().warning(f'{topic} is not recorded: {why}')
+
+    def _offered(self, topic: str) -> Any:
+        """Return what the topic's publishers offer, for playback to offer the same."""
+        profiles = [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
+        return offered_qos(
+            reliable=all(p.reliability == ReliabilityPolicy.RELIABLE for p in profiles),
+            latched=any(p.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in profiles),
+        )
+
+    def _look_around(self) -> None:
+        """Ask new nodes for their parameters, and follow topics that have appeared."""
+        self._census.look()
+        if self._extra - self._subscriptions_by_topic.keys() - self._refused:
+            for topic, kinds in self.get_topic_names_and_types():
+                if topic in self._extra - self._subscriptions_by_topic.keys() - self._refused:
+                    self._subscribe(topic, kinds[0])
+        for topic, subscription in list(self._subscriptions_by_topic.items()):
+            reliable = subscription.qos_profile.reliability == ReliabilityPolicy.RELIABLE
+            for info in self.get_publishers_info_by_topic(topic) if reliable else ():
+                if info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT:
+                    # A reliable subscription hears nothing from such a publisher.
+                    self.destroy_subscription(subscription)
+                    self._subscribe(topic, info.topic_type, reliable=False)
+                    break
+
+    def _check_time(self) -> None:
+        if self._duration and self._began and time.monotonic() - self._began >= self._duration:
+            self.finished = True
+
+    def _on_parameters(self, node: str, values: Mapping[str, object]) -> None:
+        self._parameters[node] = values
+        if not self.stopping.is_set():
+            self._bag.set_metadata('parameters', json.dumps(self._parameters, default=str))
+
+
+def _versions() -> dict[str, str]:
+    return {
+        'tendon_ros': __version__,
+        'python': platform.python_version(),
+        'rmw': get_rmw_implementation_identifier(),
+    }

@@ -1,0 +1,94 @@
+"""
+Channel values → serialised messages of the contract's topics.
+
+A message object costs a Python node five times as much to publish as its bytes do. The shape of
+what a node publishes does not change, so its bytes are laid out once (:mod:`..bags.layout`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendon_ros.bags.encoding import joint_layout
+from tendon_ros.bags.layout import Layout, marks
+from tendon_ros.bags.messages import typestore
+from tendon_ros.bags.stamps import IntArray
+from tendon_ros.bags.topics import (
+    joint_channel,
+    JOINT_FIELDS,
+    place_of,
+    TIP_FRAME,
+    WRENCH,
+    WRENCH_TOPICS,
+)
+from tendon_ros.base.recording import FloatArray
+
+
+@dataclass(frozen=True)
+class Wire:
+    """One message: its topic, its layout, and the channel of each number in it."""
+
+    topic: str
+    layout: Layout
+    channels: tuple[str, ...]
+
+    def encode(self, stamps: IntArray, values: Mapping[str, FloatArray]) -> list[bytes]:
+        """
+        Return serialised messages.
+
+        :param stamps: header stamps [ns], shape (n,).
+        :param values: by channel, shape (n,) each; zero in a wrench where a channel is absent.
+        :return: n messages.
+        """
+        absent = np.zeros(stamps.size)
+        columns = [values.get(name, absent) for name in self.channels]
+        return self.layout.encode(stamps, np.stack(columns, axis=1))
+
+
+def wires_for(channels: Iterable[str]) -> tuple[Wire, ...]:
+    """
+    Return the messages that carry channels.
+
+    Joints of one topic that fill different fields get messages of their own, so that nothing
+    unmeasured is sent as a number.
+
+    :param channels: names of channels.
+    :return: one wire a message.
+    """
+    wrenches: dict[str, None] = {}
+    joints: dict[str, dict[str, set[str]]] = {}
+    for name in channels:
+        topic, joint, field = place_of(name)
+        if topic in WRENCH_TOPICS:
+            wrenches[topic] = None
+        else:
+            joints.setdefault(topic, {}).setdefault(joint, set()).add(field)
+    found = [wire for topic, fields in joints.items() for wire in _joint_wires(topic, fields)]
+    found += [Wire(topic, _wrench_layout(), WRENCH_TOPICS[topic]) for topic in wrenches]
+    return tuple(found)
+
+
+def _joint_wires(topic: str, fields: Mapping[str, set[str]]) -> Iterator[Wire]:
+    for filled in dict.fromkeys(frozenset(some) for some in fields.values()):
+        members = [joint for joint, some in fields.items() if some == filled]
+        order = [field for field in JOINT_FIELDS if field in filled]
+        names = tuple(joint_channel(topic, joint, field) for field in order for joint in members)
+        yield Wire(topic, joint_layout(members, order), names)
+
+
+def _wrench_layout() -> Layout:
+    """Return the layout of a wrench of which ``force.y`` and ``torque.z`` are filled."""
+    types = typestore().types
+    vector = types['geometry_msgs/msg/Vector3']
+    force, torque = marks(2)
+    stamp = types['builtin_interfaces/msg/Time'](sec=0, nanosec=0)
+    message = types[WRENCH](
+        header=types['std_msgs/msg/Header'](stamp=stamp, frame_id=TIP_FRAME),
+        wrench=types['geometry_msgs/msg/Wrench'](
+            force=vector(x=0.0, y=force, z=0.0), torque=vector(x=0.0, y=0.0, z=torque)
+        ),
+    )
+    return Layout(message, WRENCH, [force, torque])
