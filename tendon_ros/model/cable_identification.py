@@ -26,9 +26,9 @@ from tendon_ros.model.quantity import parsed
 
 FloatArray = NDArray[np.float64]
 
-#: a, b, n, d0 [mm, N] at 5 N: where the search begins
-_SEED = np.array([7.8, 1.35, 6.4, 0.63])
-_SEED_PRETENSION = 5.0
+#: where the search begins, a case that is solved: the paper's forces at a pretension of 5 N
+_SOLVED_A_B_N_D0 = np.array([7.766989, 1.345426, 6.365265, 0.6342057])  # in mm and N
+_SOLVED_FORCES = np.array([0.1745329, 0.8726646, 1.2217305, 3.05, 30.0, 250.0 / 3.0, 5.0])
 
 
 @dataclass(frozen=True)
@@ -101,14 +101,17 @@ def identified(test: BlockedTip, pretension: float) -> PowerLaw:
         )
     if pretension <= 0.0:
         raise InstrumentError(f'pretension: {pretension:g} N must be positive')
-    unknown = np.log(_SEED)
-    # The law changes fast with pretension: walk there from where it is known.
-    steps = max(2, 1 + round(8 * abs(np.log(pretension / _SEED_PRETENSION))))
-    for now in np.geomspace(_SEED_PRETENSION, pretension, steps):
-        found = root(_misses, unknown, args=(test, float(now)), tol=1e-13)
-        unknown = found.x
+    wanted = np.concatenate([1e3 * test.elongations, test.net_forces, [pretension]])
+    if np.any(wanted <= 0.0):
+        raise InstrumentError('forces: angles and forces must be positive')
+    # The law changes fast with what it has to meet: walk there from a case that is solved.
+    way = np.log(wanted / _SOLVED_FORCES)
+    steps = 1 + int(10.0 * np.max(np.abs(way)))
+    unknown = np.log(_SOLVED_A_B_N_D0)
+    for part in np.linspace(0.0, 1.0, steps + 1)[1:]:
+        unknown = root(_misses, unknown, _SOLVED_FORCES * np.exp(part * way), tol=1e-13).x
     law = _law(unknown, pretension)
-    if np.max(np.abs(_misses(unknown, test, pretension))) > 1e-9 or law.exponent <= 1.0:
+    if np.max(np.abs(_misses(unknown, wanted))) > 1e-9 or law.exponent <= 1.0:
         raise InstrumentError(
             f'forces: no a x + b x^n gives them at a pretension of {pretension:g} N; give forces '
             'that grow faster than the angle, or another pretension'
@@ -121,13 +124,13 @@ def _law(unknown: FloatArray, pretension: float) -> PowerLaw:
     return PowerLaw(a, b, n, 1e-3 * d0, pretension)
 
 
-def _misses(unknown: FloatArray, test: BlockedTip, pretension: float) -> FloatArray:
-    """Return the relative errors of the three forces and of the pretension."""
+def _misses(unknown: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return the relative errors of the three net forces and of the pretension."""
+    elongation, pretension = 1e-3 * wanted[:3], wanted[6]
     with np.errstate(over='ignore', invalid='ignore'):
         law = _law(unknown, pretension)
-        forces = law.net_force(test.elongations) / test.net_forces - 1.0
-        preload = law.tension(np.array([law.preload])) / pretension - 1.0
-    misses: FloatArray = np.nan_to_num(np.append(forces, preload), nan=1e6, posinf=1e6)
+        made = np.append(law.net_force(elongation), law.tension(np.array([law.preload])))
+        misses: FloatArray = np.nan_to_num(made / wanted[3:] - 1.0, nan=1e6, posinf=1e6)
     return misses
 
 

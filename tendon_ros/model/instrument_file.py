@@ -18,7 +18,7 @@ from tendon_ros.model.instrument import Curve, Instrument
 from tendon_ros.model.instrument_build import built, curve
 from tendon_ros.model.instrument_schema import CurveSection, InstrumentSection, Section
 from tendon_ros.model.instrument_text import text_of
-from tendon_ros.model.yaml_text import read_mapping
+from tendon_ros.model.yaml_text import mapping_of, read_mapping
 
 
 def find_instrument(name_or_path: str | Path) -> Path:
@@ -76,18 +76,19 @@ def save_instrument(instrument: Instrument, path: Path) -> None:
 
     :param instrument: the instrument.
     :param path: the file; its folder must exist.
-    :raises InstrumentError: where the instrument has sensors that no file can describe, or the
+    :raises InstrumentError: where the instrument has something that no file can describe, or the
         file cannot be written.
     """
-    try:
-        path.write_text(text_of(instrument), encoding='utf-8')
-    except OSError as error:
-        raise InstrumentError(f'{path}: {error.strerror}; choose a place to write to') from None
-    if load_instrument(path) != instrument:
+    text = text_of(instrument)
+    if _built(path, mapping_of(text, path)) != instrument:
         raise InstrumentError(
             f'{path}: {instrument.name} has something that a file cannot describe; give each '
             'motor an encoder and a torque sensor, and name sensors as load_instrument does'
         )
+    try:
+        path.write_text(text, encoding='utf-8')
+    except OSError as error:
+        raise InstrumentError(f'{path}: {error.strerror}; choose a place to write to') from None
 
 
 def _built(path: Path, document: dict[str, Any]) -> Instrument:

@@ -192,7 +192,7 @@ def _effect(use: EffectUse) -> Document:
     return {
         'effect': use.effect,
         'place': use.place,
-        'parameters': {name: _value(v, units[name]) for name, v in use.parameters.items()},
+        'parameters': {name: _value(v, units.get(name, '')) for name, v in use.parameters.items()},
     }
 
 

@@ -93,8 +93,7 @@ class Trajectory:
         :return: [rad], shape (ticks, motors).
         """
         ticks = math.floor(self.duration / period + 1e-9) + 1
-        ticking: FloatArray = period * np.arange(ticks)
-        return self.at(ticking)
+        return self.at(period * np.arange(ticks, dtype=np.float64))
 
 
 def check_limits(trajectory: Trajectory, instrument: Instrument) -> None:

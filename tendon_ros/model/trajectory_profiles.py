@@ -71,7 +71,7 @@ def paper_fig12(
     Follow the paper's Fig. 12: 0, 5, 7, 5, 4 degrees, each held for three seconds.
 
     The text gives the angles; each change takes a second, and the second rise begins at 5 s, until
-    which the paper says that its model agrees with its rig. Corners are rounded by a Gaussian of the width given.
+    which the paper says that its model agrees with its rig. A Gaussian rounds the corners.
     """
     time = _grid(duration)
     angle = np.zeros_like(time)
@@ -162,8 +162,8 @@ def minimum_jerk(
 
 
 def _grid(duration: float) -> FloatArray:
-    grid: FloatArray = SPACING * np.arange(max(1, round(duration / SPACING)) + 1)
-    return grid
+    points = max(1, round(duration / SPACING)) + 1
+    return SPACING * np.arange(points, dtype=np.float64)
 
 
 def _moved(

@@ -54,6 +54,18 @@ def read_mapping(path: Path) -> dict[str, Any]:
         raise InstrumentError(f'{path}: {error.strerror}; give an existing YAML file') from None
     except UnicodeDecodeError:
         raise InstrumentError(f'{path}: is not UTF-8 text; give a YAML file') from None
+    return mapping_of(text, path)
+
+
+def mapping_of(text: str, path: Path) -> dict[str, Any]:
+    """
+    Return the top-level mapping of a YAML text with every scalar as text.
+
+    :param text: the YAML.
+    :param path: where it stands, for messages.
+    :return: nested dicts, lists and texts.
+    :raises InstrumentError: where it is not YAML, or gives a key twice.
+    """
     try:
         document = yaml.load(text, _TextLoader)
     except yaml.MarkedYAMLError as error:
