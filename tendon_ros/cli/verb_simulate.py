@@ -26,7 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='KEY=VALUE',
         help="a setting of the trajectory, such as --set 'amplitude=5 deg'",
     )
-    parser.add_argument('--seed', type=int, help='of the noise of the sensors; noise is off without')
+    parser.add_argument(
+        '--seed', type=int, help='of the noise of the sensors; noise is off without'
+    )
     parser.add_argument('--rate', type=float, default=500.0, help='recorded rows per second [Hz]')
     parser.add_argument('--engine', choices=('auto', 'compiled', 'plain'), default='auto')
     parser.add_argument('--namespace', default='/instrument', help='of the topics written')
@@ -77,8 +79,6 @@ def run(args: argparse.Namespace) -> None:
             progress=progress,
         )
     took = time.perf_counter() - began
-    path = write_recording(
-        recording, args.out, namespace=args.namespace, overwrite=args.overwrite
-    )
+    path = write_recording(recording, args.out, namespace=args.namespace, overwrite=args.overwrite)
     span = recording.end - recording.start
     print(f'{path}: {span:.3f} s simulated in {took:.2f} s ({recording.metadata["engine"]})')

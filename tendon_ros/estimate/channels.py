@@ -108,6 +108,8 @@ def estimated_angles(instrument: Instrument, angle: FloatArray) -> dict[str, flo
     :return: values by channel.
     """
     return {
-        channel_name('estimate', f'pulley_{name}', 'position'): float(angle[instrument.index(name)])
+        channel_name('estimate', f'pulley_{name}', 'position'): float(
+            angle[instrument.index(name)]
+        )
         for name in instrument.inner
     }

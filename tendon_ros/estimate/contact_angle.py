@@ -61,8 +61,8 @@ class ContactAngleObserver(Observer):
             self._before = now
             gap = SETTLING
         start = self._runner.time
-        path = np.column_stack([self._before, now])
-        row = self._runner.glide(start + gap, Signals.smooth(start, gap, path))
+        path = Signals.straight(start, gap, self._before, now)
+        row = self._runner.glide(start + gap, path)
         self._before = now
         angle = row.angle[0]
         force = float(row.contact_force[0, self._contact])
@@ -87,9 +87,7 @@ class ContactAngleObserver(Observer):
             ratio[self._instrument.index(name)] = value
         wall = contact.stiffness * contact.arm**2 * np.outer(ratio, ratio)
         total = stiffness + wall
-        follow = np.linalg.solve(
-            total[np.ix_(inner, inner)], -total[np.ix_(inner, driven)]
-        )
+        follow = np.linalg.solve(total[np.ix_(inner, inner)], -total[np.ix_(inner, driven)])
         by_motor = contact.stiffness * contact.arm * (ratio[inner] @ follow + ratio[driven])
         return float(np.linalg.norm(by_motor * self._sigma))
 

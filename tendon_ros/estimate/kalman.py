@@ -24,7 +24,7 @@ from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.layout import arrays_of
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
-from tendon_ros.model.statics import balance_of, without_contacts
+from tendon_ros.model.statics import Linearisation, without_contacts
 
 FloatArray = NDArray[np.float64]
 
@@ -59,6 +59,7 @@ class KalmanObserver(Observer):
         everyone = {name: row for row, name in enumerate(instrument.pulley_names)}
         arrays = arrays_of(free, pushed=everyone)
         self._runner = Runner(free, arrays, engine)
+        self._linearisation = Linearisation(self._runner.structure)
         at = arrays.structure
         self._gain = arrays.m[at['MOTOR_GAIN'] : at['MOTOR_GAIN'] + at['U']]
         self._bias = arrays.m[at['MOTOR_BIAS'] : at['MOTOR_BIAS'] + at['U']]
@@ -113,7 +114,7 @@ class KalmanObserver(Observer):
         self._runner.place(self._angle, self._velocity)
         row = self._runner.glide(self._runner.time + gap, Signals.held(push))
         self._angle, self._velocity = row.angle[0].copy(), row.velocity[0].copy()
-        balance = balance_of(self._runner)
+        balance = self._linearisation.read(self._runner)
         slope = np.zeros((2 * n + 1, 2 * n + 1))
         slope[:n, n : 2 * n] = np.eye(n)
         slope[n : 2 * n, :n] = -balance.stiffness / self._inertia[:, None]

@@ -25,7 +25,9 @@ _BUILDERS: Mapping[str, tuple[str, Callable[..., Observer]]] = {
 }
 
 #: what each method is, by name
-METHODS: Mapping[str, str] = MappingProxyType({name: text for name, (text, _) in _BUILDERS.items()})
+METHODS: Mapping[str, str] = MappingProxyType(
+    {name: text for name, (text, _) in _BUILDERS.items()}
+)
 
 
 def build(

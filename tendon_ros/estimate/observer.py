@@ -63,7 +63,9 @@ class Observer(ABC):
             if value is None:
                 raise RecordingError(f'{name}: not in the measurement; this method needs it')
             if not abs(value) < float('inf'):
-                raise RecordingError(f'{name}: {value} is not a finite number; the sample is left out')
+                raise RecordingError(
+                    f'{name}: {value} is not a finite number; the sample is left out'
+                )
         if self._last_ns is not None and measurement.stamp_ns <= self._last_ns:
             raise RecordingError(
                 f'stamp {measurement.stamp_ns} ns does not come after {self._last_ns} ns; the '

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from tendon_ros.base.errors import RecordingError, listed
+from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement, Observer
 

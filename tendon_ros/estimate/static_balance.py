@@ -14,9 +14,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import InstrumentError, RecordingError, listed
+from tendon_ros.base.errors import InstrumentError, listed, RecordingError
 from tendon_ros.estimate.channels import (
-    angle_channel,
     deviation,
     estimated_angles,
     operating_force,
@@ -32,6 +31,8 @@ FloatArray = NDArray[np.float64]
 BALANCE = 1e-5
 #: a Newton step below this ends the search [rad]
 CLOSE = 1e-9
+#: a step that promises to lower the weighted squares by less than this ends the search too
+PROMISE = 1e-6
 #: most steps of one search
 TRIES = 60
 #: velocities for the direction of friction are smoothed over this time [s]
@@ -108,25 +109,30 @@ class StaticBalanceObserver(Observer):
             i for i in range(len(one.pulleys)) if i not in measured and i not in unknown
         ]
         rows = [row.name for row in (*one.loops, *one.couplings)]
-        self._seen: list[tuple[int, int, float]] = []  # kind 0 motor or 1 loop, index, deviation
-        for _, sensor in self._torques:
-            self._seen.append(self._seen_row(sensor, motors, rows))
-        self._arm = one.routing()
+        count = len(self._balanced) + len(self._torques)
+        self._routing = one.routing()
+        self._fixed = [i for _, i in self._angles]
+        self._on_pulleys = np.zeros((count, len(one.pulleys)))
+        self._on_loops = np.zeros((count, len(rows)))
+        self._on_pulleys[np.arange(len(self._balanced)), self._balanced] = 1.0
+        self._weight = np.full(count, 1.0 / BALANCE)
+        self._reading_sign = np.ones(len(self._torques))
+        for n, (_, sensor) in enumerate(self._torques):
+            row = len(self._balanced) + n
+            self._weight[row] = 1.0 / deviation(sensor)
+            if sensor.kind == 'motor_torque':  # what the motor gives balances all the rest
+                self._on_pulleys[row, motors[sensor.of]] = 1.0
+            else:  # the sensor reads the torque that the loop or coupling puts on the pulley
+                k = rows.index(sensor.through)
+                self._on_loops[row, k] = -self._routing[k, one.index(sensor.of)]
+                self._reading_sign[n] = -1.0
         unknowns = len(self._free) + 1
-        if len(self._balanced) + len(self._seen) < unknowns:
+        if count < unknowns:
             raise InstrumentError(
                 f'{one.name}: {unknowns} unknowns (inner angles and the force) but only '
-                f'{len(self._balanced) + len(self._seen)} balances and torques; add a torque or '
+                f'{count} balances and torques; add a torque or '
                 'angle channel'
             )
-
-    @staticmethod
-    def _seen_row(
-        sensor: Sensor, motors: dict[str, int], rows: Sequence[str]
-    ) -> tuple[int, int, float]:
-        if sensor.kind == 'motor_torque':
-            return 0, motors[sensor.of], deviation(sensor)
-        return 1, rows.index(sensor.through), deviation(sensor)
 
     def _reset(self) -> None:
         self._statics.reset()
@@ -168,23 +174,23 @@ class StaticBalanceObserver(Observer):
     def _rigid(self, angle: FloatArray) -> FloatArray:
         """Return the free angles that leave every cable as it is: where a search may begin."""
         fixed = [i for i in range(len(angle)) if i not in self._free]
-        routing = self._instrument.routing()
+        routing = self._routing
         found, *_ = np.linalg.lstsq(
             routing[:, self._free], -routing[:, fixed] @ angle[fixed], rcond=None
         )
         return np.asarray(found)
 
-    def _solve(
-        self, angle: FloatArray, measurement: Measurement
-    ) -> tuple[float, FloatArray]:
+    def _solve(self, angle: FloatArray, measurement: Measurement) -> tuple[float, FloatArray]:
         """Find free angles (in place) and force; return the force and the covariance of both."""
         force = self._force
         start = angle[self._free].copy()
         cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
         for _ in range(TRIES):
-            move, *_ = np.linalg.lstsq(rows, -residual, rcond=None)
+            orthogonal, upper = np.linalg.qr(rows)
+            move = np.linalg.solve(upper, -(orthogonal.T @ residual))
             largest = float(np.abs(move[:-1]).max()) if len(move) > 1 else 0.0
-            if largest < CLOSE:
+            promised = float(np.sum(np.square(upper @ move)))
+            if largest < CLOSE or promised < PROMISE:
                 break
             # the curve's knee and slack make a full step overshoot: shorten it until it helps
             part = min(1.0, 0.05 / largest)
@@ -205,7 +211,8 @@ class StaticBalanceObserver(Observer):
                 f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
                 'or a sign may be wrong'
             )
-        inverse = np.linalg.pinv(rows)
+        orthogonal, upper = np.linalg.qr(rows)
+        inverse = np.linalg.solve(upper, orthogonal.T)
         covariance = inverse @ inverse.T
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
         return force, covariance + through @ through.T
@@ -225,25 +232,16 @@ class StaticBalanceObserver(Observer):
         self, balance: Balance, force: float, measurement: Measurement
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return weighted residuals, and their slopes by unknowns and by the measured angles."""
-        fixed = [i for _, i in self._angles]
-        lever = self._operating.torque
         stiffness = balance.stiffness + self._pace * balance.damping
-        torque = balance.torque + lever * force
-        residual, slope, by_fixed = [], [], []
-        for i in self._balanced:
-            residual.append(torque[i] / BALANCE)
-            slope.append(np.append(-stiffness[i, self._free], lever[i]) / BALANCE)
-            by_fixed.append(-stiffness[i, fixed] / BALANCE)
-        for (name, sensor), (kind, index, sigma) in zip(self._torques, self._seen, strict=True):
-            reading = measurement.values[name]
-            if kind == 0:
-                residual.append((torque[index] + reading) / sigma)
-                slope.append(np.append(-stiffness[index, self._free], lever[index]) / sigma)
-                by_fixed.append(-stiffness[index, fixed] / sigma)
-            else:
-                arm = self._arm[index, self._instrument.index(sensor.of)]
-                by_angle = arm * balance.loop_stiffness[index] * self._arm[index]
-                residual.append((arm * balance.loop_force[index] - reading) / sigma)
-                slope.append(np.append(by_angle[self._free], 0.0) / sigma)
-                by_fixed.append(by_angle[fixed] / sigma)
-        return np.array(residual), np.array(slope), np.array(by_fixed)
+        torque = balance.torque + self._operating.torque * force
+        # every row is linear in the torques on pulleys and the forces of loops
+        by_angle = -self._on_pulleys @ stiffness
+        by_angle += self._on_loops @ (balance.loop_stiffness[:, None] * self._routing)
+        read = np.array([measurement.values[name] for name, _ in self._torques])
+        residual = self._on_pulleys @ torque + self._on_loops @ balance.loop_force
+        residual[len(self._balanced) :] += self._reading_sign * read
+        slope = np.column_stack(
+            [by_angle[:, self._free], self._on_pulleys @ self._operating.torque]
+        )
+        weight = self._weight[:, None]
+        return residual * self._weight, slope * weight, by_angle[:, self._fixed] * weight

@@ -10,18 +10,18 @@ not, the same file runs as plain Python, slower and to the same numbers within r
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator, Sequence
 import contextlib
+from dataclasses import dataclass
+from functools import lru_cache
 import hashlib
 import importlib.util
 import inspect
 import os
+from pathlib import Path
 import sys
 import tempfile
 import textwrap
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -31,10 +31,10 @@ from tendon_ros import __version__
 from tendon_ros.base.effect import Effect
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.effects import catalogue
-from tendon_ros.model.layout import Structure, law_numbers
+from tendon_ros.model.layout import law_numbers, Structure
 
 #: the kernel's files, in the order in which they are joined; they are read, never imported
-PARTS = ('forces', 'rosenbrock', 'motion')
+PARTS = ('loops', 'forces', 'linear', 'rosenbrock', 'events', 'sensing', 'motion')
 
 #: how a law of each hook is called, and what "no law" returns
 CALLS = {
@@ -51,8 +51,7 @@ _FLOAT = ast.Name('float')
 
 #: rounding may be reordered, but NaN and infinity keep their meaning: a divergence must be seen
 OPTIONS = (
-    "cache=True, nogil=True, error_model='numpy', "
-    "fastmath={'reassoc', 'contract', 'arcp', 'nsz'}"
+    "cache=True, nogil=True, error_model='numpy', fastmath={'reassoc', 'contract', 'arcp', 'nsz'}"
 )
 
 
@@ -150,9 +149,7 @@ def _definitions() -> Iterator[ast.stmt]:
     for part in PARTS:
         text = (Path(__file__).parent / 'kernel' / f'{part}.py').read_text(encoding='utf-8')
         for node in ast.parse(text).body:
-            if isinstance(node, ast.FunctionDef):
-                yield node
-            elif isinstance(node, ast.Assign):
+            if isinstance(node, (ast.FunctionDef, ast.Assign)):
                 yield node
 
 
@@ -217,7 +214,7 @@ def _write_atomically(path: Path, text: str) -> None:
     handle, name = tempfile.mkstemp(dir=path.parent, suffix='.tmp')
     with os.fdopen(handle, 'w', encoding='utf-8') as file:
         file.write(text)
-    os.replace(name, path)
+    Path(name).replace(path)
 
 
 def _load(path: Path) -> ModuleType:
@@ -225,7 +222,8 @@ def _load(path: Path) -> ModuleType:
     if name in sys.modules:
         return sys.modules[name]
     spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     with contextlib.ExitStack() as undo:
@@ -233,5 +231,3 @@ def _load(path: Path) -> ModuleType:
         spec.loader.exec_module(module)
         undo.pop_all()
     return module
-
-

@@ -21,7 +21,7 @@ from tendon_ros.base.effect import HOOKS
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.effects import catalogue, find
 from tendon_ros.model.cable import elongation_at, uniform_cubic
-from tendon_ros.model.instrument import EffectUse, Instrument, contact_place
+from tendon_ros.model.instrument import contact_place, EffectUse, Instrument
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -109,9 +109,7 @@ class Structure:
         }  # fmt: skip
         sizes['STATES'] = sizes['N'] + sizes['U'] + 2 * sizes['M']
         sizes['DIM'] = 2 * sizes['N'] + sizes['STATES']
-        sizes['WIDTH_ROW'] = (
-            1 + 2 * sizes['N'] + sizes['U'] + sizes['M'] + sizes['K'] + sizes['Q']
-        )
+        sizes['WIDTH_ROW'] = 1 + 2 * sizes['N'] + sizes['U'] + sizes['M'] + sizes['K'] + sizes['Q']
         out: dict[str, int | tuple[int, ...]] = dict(sizes)
         for array, places in PLACES.items():
             at = 0
@@ -508,7 +506,12 @@ class _Packer:
             self._point(m, d, k, where, half)
 
     def _point(
-        self, m: FloatArray, d: IntArray, k: int, where: tuple[int, int, float, float], below: float
+        self,
+        m: FloatArray,
+        d: IntArray,
+        k: int,
+        where: tuple[int, int, float, float],
+        below: float,
     ) -> None:
         at = self.structure
         offset, cells, start, rate = where
@@ -521,4 +524,3 @@ class _Packer:
 
 def _put(array: NDArray[np.generic], at: int, values: Sequence[float] | FloatArray) -> None:
     array[at : at + len(values)] = np.asarray(values)
-

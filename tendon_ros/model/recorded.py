@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.recording import Channel, Recording, channel_name
+from tendon_ros.base.recording import Channel, channel_name, Recording
 from tendon_ros.model.runner import Rows
 
 FloatArray = NDArray[np.float64]

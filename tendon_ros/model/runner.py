@@ -1,6 +1,4 @@
-"""
-The kernel with its arrays and its carried state: what every way of running the physics stands on.
-"""
+"""The kernel with its arrays and its carried state: what all running stands on."""
 
 from __future__ import annotations
 
@@ -80,7 +78,9 @@ class Rows:
     @property
     def reading(self) -> FloatArray:
         """What the sensors say, shape (ticks, sensors), in the instrument's order of sensors."""
-        return self._columns(self.structure['WIDTH_ROW'] - self.structure['Q'], self.structure['Q'])
+        return self._columns(
+            self.structure['WIDTH_ROW'] - self.structure['Q'], self.structure['Q']
+        )
 
 
 class Runner:
@@ -134,6 +134,7 @@ class Runner:
         self._memories = new.copy()
         self._m: Any = self.engine.array(arrays.m)
         self._d: Any = self.engine.array(arrays.d)
+        self._no_signals: Any = self.engine.array(Signals.none().flat)
 
     def rest(self, pose: Mapping[str, float]) -> None:
         """
@@ -244,6 +245,11 @@ class Runner:
             self._state[n + i] = float(velocity[own])
 
     @property
+    def memories(self) -> int:
+        """How many auxiliary states friction, cables and controllers have."""
+        return int(self._d[self.structure['ACTIVE']])
+
+    @property
     def work(self) -> Any:
         """The kernel's scratch, at the places that the structure names."""
         return self._work
@@ -255,7 +261,7 @@ class Runner:
             self._d,
             self._work,
             self._modes,
-            self.engine.array(Signals.none().flat),
+            self._no_signals,
             self._carried,
             self._state,
         )

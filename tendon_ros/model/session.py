@@ -15,7 +15,7 @@ from tendon_ros.model.instrument_text import text_of
 from tendon_ros.model.recorded import recording_of
 from tendon_ros.model.runner import Rows
 from tendon_ros.model.simulation import Simulation
-from tendon_ros.model.trajectory import Trajectory, check_limits
+from tendon_ros.model.trajectory import check_limits, Trajectory
 
 #: header stamp of time zero: ROS takes a stamp of zero for "not set" [ns]
 FIRST_STAMP_NS = 1_000_000_000

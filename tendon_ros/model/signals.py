@@ -49,6 +49,20 @@ class Signals:
         return cls(column, np.zeros_like(column), 0.0, 1.0)
 
     @classmethod
+    def straight(cls, start: float, gap: float, before: FloatArray, after: FloatArray) -> Signals:
+        """
+        Return signals that go straight from one place to another.
+
+        :param start: when [s].
+        :param gap: how long [s].
+        :param before: values at first, shape (signals,).
+        :param after: values at last, shape (signals,).
+        :return: the signals.
+        """
+        slope = (after - before) / gap
+        return cls(np.stack([before, after], 1), np.stack([slope, slope], 1), start, gap)
+
+    @classmethod
     def through(cls, start: float, step: float, values: FloatArray) -> Signals:
         """
         Return monotone signals through samples: no overshoot at a step.

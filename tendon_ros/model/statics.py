@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import arrays_of
+from tendon_ros.model.layout import arrays_of, Structure
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
 
@@ -50,43 +50,57 @@ def without_contacts(instrument: Instrument) -> Instrument:
     return replace(instrument, contacts=away)
 
 
-def balance_of(runner: Runner) -> Balance:
+class Linearisation:
     """
-    Return the torques and derivatives that a runner's kernel has just linearised.
+    Reads what a kernel has just linearised, in the instrument's order.
 
-    :param runner: after ``weigh`` or ``glide``.
-    :return: the balance, in the instrument's order.
+    :param structure: of the runner that is read.
     """
-    at = runner.structure
-    n, m, width = at['N'], at['M'], at['WIDTH']
-    order = np.array(at.order)
-    work = runner.work
 
-    def part(name: str, count: int) -> FloatArray:
-        return np.asarray(work[at[name] : at[name] + count], dtype=np.float64)
+    def __init__(self, structure: Structure) -> None:
+        at = structure
+        n, m, width = at['N'], at['M'], at['WIDTH']
+        order = np.array(at.order)
+        entries = [
+            (k, order[i], width * k + e)
+            for k, row in enumerate(at.loop_pulley)
+            for e, i in enumerate(row)
+        ]
+        table = np.array(entries, dtype=np.intp).reshape(-1, 3)
+        self._shape = (m, n)
+        self._cell = (table[:, 0], table[:, 1])
+        self._entry = table[:, 2]
+        own = np.argsort(order)
+        self._places = {
+            name: at[name] + own for name in ('J_ANGLE', 'J_SPEED', 'TORQUE', 'SIDE', 'BUDGET')
+        }
+        self._places |= {name: at[name] + self._entry for name in ('J_RADIUS', 'J_ARM', 'J_GRIP')}
+        self._places |= {
+            name: at[name] + np.arange(m)
+            for name in ('J_LOOP', 'J_LOOP_RATE', 'J_TOTAL', 'TENSION')
+        }
 
-    def matrix(name: str) -> FloatArray:
-        out = np.zeros((m, n))
-        flat = part(name, m * width)
-        for k, row in enumerate(at.loop_pulley):
-            for e, i in enumerate(row):
-                out[k, order[i]] = flat[width * k + e]
-        return out
+    def read(self, runner: Runner) -> Balance:
+        """
+        Return the torques and derivatives.
 
-    def own(values: FloatArray) -> FloatArray:
-        out = np.empty(n)
-        out[order] = values
-        return out
-
-    radius, arm, grip = matrix('J_RADIUS'), matrix('J_ARM'), matrix('J_GRIP')
-    loop_stiffness = part('J_LOOP', m)
-    stiffness = arm.T @ (loop_stiffness[:, None] * radius)
-    stiffness -= grip.T @ (part('J_TOTAL', m)[:, None] * radius)
-    stiffness -= np.diag(own(part('J_ANGLE', n)))
-    damping = arm.T @ (part('J_LOOP_RATE', m)[:, None] * radius)
-    damping -= np.diag(own(part('J_SPEED', n)))
-    torque = own(part('TORQUE', n) + part('SIDE', n) * part('BUDGET', n))
-    return Balance(torque, stiffness, damping, part('TENSION', m), loop_stiffness)
+        :param runner: after ``weigh`` or ``glide``.
+        :return: the balance.
+        """
+        work = np.asarray(runner.work, dtype=np.float64)
+        part = {name: work[place] for name, place in self._places.items()}
+        radius, arm, grip = np.zeros((3, *self._shape))
+        radius[self._cell] = part['J_RADIUS']
+        arm[self._cell] = part['J_ARM']
+        grip[self._cell] = part['J_GRIP']
+        stiffness = arm.T @ (part['J_LOOP'][:, None] * radius)
+        stiffness -= grip.T @ (part['J_TOTAL'][:, None] * radius)
+        damping = arm.T @ (part['J_LOOP_RATE'][:, None] * radius)
+        diagonal = np.arange(self._shape[1])
+        stiffness[diagonal, diagonal] -= part['J_ANGLE']
+        damping[diagonal, diagonal] -= part['J_SPEED']
+        torque = part['TORQUE'] + part['SIDE'] * part['BUDGET']
+        return Balance(torque, stiffness, damping, part['TENSION'], part['J_LOOP'])
 
 
 class Statics:
@@ -108,6 +122,7 @@ class Statics:
         everyone = {name: row for row, name in enumerate(instrument.pulley_names)}
         free = without_contacts(instrument)
         self._runner = Runner(free, arrays_of(free, effects, prescribed=everyone), engine)
+        self._linearisation = Linearisation(self._runner.structure)
 
     def at(self, angle: FloatArray, velocity: FloatArray) -> Balance:
         """
@@ -119,7 +134,7 @@ class Statics:
         """
         self._runner.place(angle, velocity)
         self._runner.weigh()
-        return balance_of(self._runner)
+        return self._linearisation.read(self._runner)
 
     def carry(self, before: FloatArray, after: FloatArray, gap: float) -> None:
         """
@@ -129,9 +144,9 @@ class Statics:
         :param after: angles at the end [rad], shape (n,).
         :param gap: the time between [s].
         """
-        now = self._runner.time
-        path = np.column_stack([before, after])
-        self._runner.glide(now + gap, Signals.smooth(now, gap, path))
+        if self._runner.memories:
+            now = self._runner.time
+            self._runner.glide(now + gap, Signals.straight(now, gap, before, after))
 
     def reset(self, pose: Mapping[str, float] | None = None) -> None:
         """

@@ -1,176 +1,26 @@
 """
-Forces: cables, contacts, laws of the effects, and their derivatives, at one state.
+Forces: contacts, dry friction, controllers that act continuously, and the right-hand side.
 
-Equations (1)-(6) of the paper, as a network: elongation ``delta = C theta``, net force of a loop
-``T(delta) = t(d0 + delta) - t(d0 - delta)`` (physics of two preloaded cables), torque
-``-C^T T(delta)``. Nothing here knows of five pulleys.
+Equations (1)-(6) of the paper, as a network: torque ``-C^T T(delta)`` on every pulley. Nothing
+here knows of five pulleys.
 """
 
 from __future__ import annotations
 
+from tendon_ros.model.kernel.loops import clipped, pull, smooth, wind
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BUDGET, BUDGET_L, BUDGET_W, BUDGETS,
+    ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BUDGET, BUDGETS, BUDGET_L, BUDGET_W,
     COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON, CONTACT_POSITION,
-    CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, CURVE_BELOW, CURVE_CELLS,
-    CURVE_OFFSET, CURVE_RATE, CURVE_START, DAMPING, DELTA, DRIVE, DRY, ELONGATIONS, EPOCH, F,
-    FORCE, FORCE_Q, FORCE_V, GAP, INERTIA, INPUT, INTEGRAL, K, KD, KI, KP, LIMIT, LOAD,
-    LOOP_DAMPING, LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT,
-    MOTOR_PULLEY, N, PLAY, PRELOAD, PUSH, RADIUS, RATE, REFERENCE, SCALE, SHIFT, SHIFT_D, SIDE,
-    SLACK, STATE_A, STATE_B, STATE_RATE, STATE_S, STATE_T, STATE_Z,
-    STILL, TENSION, TENSION_D, TENSION_R, TENSIONS, TORQUE, TORQUE_T, TORQUE_W, TORQUES, TOTAL,
-    TOTAL_D, TOUCH, TURN, U, WIDTH, WINDINGS, WOUND, Floats, Ints, budget_law, elongation_law,
-    tension_law, torque_law, winding_law,
+    CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING, DRIVE, DRY, EPOCH, F,
+    FORCE, FORCE_Q, FORCE_V, Floats, GAP, INERTIA, INPUT, INTEGRAL, Ints, K, KD, KI, KP,
+    LIMIT, LOAD, LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT,
+    MOTOR_PULLEY, N, PUSH, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B, STATE_RATE, STATE_T,
+    STATE_Z, STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL, TOUCH, TURN, U,
+    WIDTH, budget_law, torque_law,
 )  # fmt: skip
 
-
-def clipped(value: float, low: float, high: float) -> float:
-    """Return the value, no less than low and no more than high."""
-    return low if value < low else (high if value > high else value)
-
-
-def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
-    """Return signal ``row`` at time t with its two derivatives: cubic Hermite, ends held."""
-    rows = int(s[3])
-    samples = int(s[2])
-    u = (t - s[0]) * s[1]
-    at = 4 + row * samples
-    to = at + rows * samples
-    if u <= 0.0:
-        return s[at], 0.0, 0.0
-    if u >= samples - 1:
-        return s[at + samples - 1], 0.0, 0.0
-    cell = int(u)
-    u -= cell
-    a = s[at + cell]
-    p = s[to + cell] / s[1]
-    q = s[to + cell + 1] / s[1]
-    rise = s[at + cell + 1] - a
-    b = 3.0 * rise - 2.0 * p - q
-    e = p + q - 2.0 * rise
-    return (
-        a + u * (p + u * (b + u * e)),
-        (p + u * (2.0 * b + 3.0 * u * e)) * s[1],
-        (2.0 * b + 6.0 * u * e) * s[1] * s[1],
-    )
-
-
-def cable(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float]:
-    """Return tension [N] and slope [N/m] of one cable of loop k at elongation x [m]."""
-    u = (x - m[CURVE_START + k]) * m[CURVE_RATE + k]
-    o = d[CURVE_OFFSET + k]
-    if u <= 0.0:
-        slope = m[CURVE_BELOW + k]
-        return m[o] + slope * (x - m[CURVE_START + k]), slope
-    cells = d[CURVE_CELLS + k]
-    beyond = 0.0
-    if u < cells:
-        cell = int(u)
-        u -= cell
-    else:  # beyond the last point the curve goes on straight
-        cell = cells - 1
-        beyond = u - cells
-        u = 1.0
-    o += 4 * cell
-    slope = m[o + 1] + u * (2.0 * m[o + 2] + 3.0 * u * m[o + 3])
-    value = m[o] + u * (m[o + 1] + u * (m[o + 2] + u * m[o + 3]))
-    return value + beyond * slope, slope * m[CURVE_RATE + k]
-
-
-def wind(m: Floats, d: Ints, w: Floats, at: int) -> None:
-    """Set the angles that the cables see, and how they turn with the pulleys."""
-    for i in range(N):
-        w[WOUND + i] = w[at + i]
-        w[TURN + i] = 1.0
-        w[CURL + i] = 0.0
-    for a in range(d[WINDINGS + 1]):
-        n = d[WINDINGS] + 4 * a
-        i = d[n + 1]
-        arc, slope, curl = winding_law(d[n], w[at + i], m, d[n + 2])
-        w[WOUND + i] += arc
-        w[TURN + i] += slope
-        w[CURL + i] += curl
-
-
-def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
-    """Set elongation, net force and sum of tensions of every loop, with derivatives."""
-    for k in range(M):
-        delta = 0.0
-        rate = 0.0
-        for e in range(WIDTH):
-            i = LOOP_PULLEY[WIDTH * k + e]
-            r = m[RADIUS + WIDTH * k + e]
-            delta += r * w[WOUND + i]
-            rate += r * w[TURN + i] * w[at + N + i]
-        w[DELTA + k] = delta
-        w[RATE + k] = rate
-        w[SHIFT + k] = 0.0
-        w[SHIFT_D + k] = 1.0
-    for a in range(d[ELONGATIONS + 1]):
-        n = d[ELONGATIONS] + 4 * a
-        k = d[n + 1]
-        z = d[n + 3]
-        value = w[at + 2 * N + z] if z >= 0 else 0.0
-        shift, by_d, by_z, dz, dz_d, dz_r, dz_z = elongation_law(
-            d[n], w[DELTA + k], w[RATE + k], value, w[EPOCH], m, d[n + 2]
-        )
-        w[SHIFT + k] += shift
-        w[SHIFT_D + k] += by_d
-        if z >= 0:
-            w[STATE_RATE + z] = dz
-            w[STATE_A + z] = dz_d
-            w[STATE_B + z] = dz_r
-            w[STATE_Z + z] = dz_z
-            w[STATE_T + z] = by_z
-    for k in range(M):
-        x = w[DELTA + k] + w[SHIFT + k]
-        inner = w[SHIFT_D + k]
-        half = 0.5 * m[PLAY + k]
-        if half > 0.0:
-            if x > half:
-                x -= half
-            elif x < -half:
-                x += half
-            else:
-                x = 0.0
-                inner = 0.0
-        first, slope = cable(m, d, k, m[PRELOAD + k] + x)
-        second, other = cable(m, d, k, m[PRELOAD + k] - x)
-        scale = m[SCALE + k]
-        w[TENSION + k] = scale * (first - second) + m[LOOP_DAMPING + k] * w[RATE + k]
-        w[TENSION_D + k] = scale * (slope + other) * inner
-        w[TENSION_R + k] = m[LOOP_DAMPING + k]
-        w[TOTAL + k] = scale * (first + second)
-        w[TOTAL_D + k] = scale * (slope - other) * inner
-        w[SLACK + k] = m[PRELOAD + k] - m[CURVE_START + k] - abs(x)
-    for a in range(d[ELONGATIONS + 1]):
-        n = d[ELONGATIONS] + 4 * a
-        z = d[n + 3]
-        if z >= 0:
-            k = d[n + 1]
-            w[STATE_S + z] = w[STATE_T + z] * w[TOTAL_D + k] / w[SHIFT_D + k]
-            w[STATE_T + z] *= w[TENSION_D + k] / w[SHIFT_D + k]
-    for a in range(d[TENSIONS + 1]):
-        n = d[TENSIONS] + 4 * a
-        k = d[n + 1]
-        z = d[n + 3]
-        value = w[at + 2 * N + z] if z >= 0 else 0.0
-        extra, by_d, by_r, by_z, dz, dz_d, dz_r, dz_z = tension_law(
-            d[n], w[DELTA + k], w[RATE + k], value, w[EPOCH], m, d[n + 2]
-        )
-        w[TENSION + k] += extra
-        w[TENSION_D + k] += by_d
-        w[TENSION_R + k] += by_r
-        if z >= 0:
-            w[STATE_RATE + z] = dz
-            w[STATE_A + z] = dz_d
-            w[STATE_B + z] = dz_r
-            w[STATE_Z + z] = dz_z
-            w[STATE_T + z] = by_z
-            w[STATE_S + z] = 0.0
-
-
 def touch(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
-    """Set force and event function of every contact: closed while the event function is positive."""
+    """Set force and event function of every contact: closed where that is positive."""
     for k in range(K):
         q = -m[CONTACT_POSITION + k]
         v = 0.0
@@ -231,7 +81,9 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
         i = d[n + 1]
         omega = w[at + N + i]
         # while sliding, speed is counted along the direction of sliding: smooth over a step
-        way = -w[SIDE + i] if d[DRY + i] == 1 and d[DRIVE + i] == 0 else (1.0 if omega > 0.0 else -1.0)
+        way = 1.0 if omega > 0.0 else -1.0
+        if d[DRY + i] == 1 and d[DRIVE + i] == 0:
+            way = -w[SIDE + i]
         if way == 0.0:  # stuck: the budget of the direction in which it is pushed
             way = 1.0 if w[TORQUE + i] > 0.0 else -1.0
             omega = 0.0

@@ -1,5 +1,5 @@
 """
-The names that the engine binds before it joins the kernel's files: sizes, who touches whom, places.
+The names that the engine binds before it joins the kernel's files.
 
 Only declared here, so that readers, editors and type checkers know them; the values are those of
 the instrument at hand and are written by :mod:`tendon_ros.model.layout`. Everything numeric that a
@@ -27,7 +27,7 @@ from collections.abc import MutableSequence, Sequence
 Floats = MutableSequence[float]
 Ints = MutableSequence[int]
 
-# --- sizes -------------------------------------------------------------------------------------
+# --- sizes -------------------------------------------------------------------
 N: int  # pulleys
 M: int  # cable loops and couplings
 K: int  # contacts
@@ -41,7 +41,7 @@ DIM: int  # 2 * N + STATES
 WIDTH_ROW: int  # columns of a recorded row: 1 + 2 * N + U + M + K + Q
 RING: int  # remembered values of each sensor
 
-# --- who touches whom ----------------------------------------------------------------------------
+# --- who touches whom --------------------------------------------------------
 LOOP_PULLEY: Sequence[int]  # M * WIDTH
 CONTACT_PULLEY: Sequence[int]  # K * WIDTH
 MOTOR_PULLEY: Sequence[int]  # U
@@ -49,12 +49,12 @@ SENSOR_SOURCE: Sequence[int]  # Q: 0 angle, 1 velocity, 2 motor torque, 3 contac
 #                                  4 contact torque, 5 torque of a loop or coupling on a pulley
 SENSOR_INDEX: Sequence[int]  # Q: pulley, motor, contact or entry of LOOP_PULLEY
 
-# --- places in m -----------------------------------------------------------------------------------
+# --- places in m -------------------------------------------------------------
 INERTIA: int
 DAMPING: int
 BREAKAWAY: int  # pre-sliding angle of the dry friction [rad]; 0: it sticks rigidly
 RADIUS: int  # M * WIDTH, signed: how an angle lengthens the loop [m]
-ARM: int  # M * WIDTH, signed: how the loop's tension turns the pulley [m]; = RADIUS by virtual work
+ARM: int  # M * WIDTH, signed: how its tension turns the pulley [m]
 PRELOAD: int  # elongation of each of a loop's two cables at rest [m]
 SCALE: int  # factor on the curve
 LOOP_DAMPING: int
@@ -83,7 +83,7 @@ SENSOR_NOISE: int
 TOLERANCE: int  # of an angle in one step [rad]
 STILL: int  # speed within which a prescribed pulley's dry friction is not at its limit [rad/s]
 
-# --- places in d -----------------------------------------------------------------------------------
+# --- places in d -------------------------------------------------------------
 DRIVE: int  # N: 1 where motion is prescribed
 MOTION: int  # N: row of s that prescribes the motion, or -1
 PUSH: int  # N: row of s that adds a torque, or -1
@@ -110,7 +110,7 @@ ELONGATIONS: int
 TENSIONS: int
 WINDINGS: int
 
-# --- places in w -----------------------------------------------------------------------------------
+# --- places in w -------------------------------------------------------------
 EPOCH: int  # a time within the present segment between switches [s]
 INPUT: int  # N: torque of the motors on their pulleys [N m]
 WOUND: int  # N: angle that the cable sees
@@ -176,7 +176,7 @@ MATRIX: int  # N * SPAN
 SLACK_START: int  # M
 PENDING: int  # N + K + M: event functions at the end of a step
 
-# --- places in c and g -----------------------------------------------------------------------------
+# --- places in c and g -------------------------------------------------------
 CLOCK: int
 STEP: int
 TICK: int
@@ -195,7 +195,7 @@ COUNT: int  # steps, rejected steps, events
 def torque_law(
     law: int, theta: float, omega: float, t: float, m: Floats, o: int
 ) -> tuple[float, float, float]:
-    """Call torque law number ``law`` with its parameters from ``m[o]`` on (written by the engine)."""
+    """Call torque law ``law``, its parameters from ``m[o]`` on (written by the engine)."""
     raise LookupError(law)
 
 

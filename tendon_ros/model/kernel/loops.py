@@ -1,0 +1,161 @@
+"""
+Cable loops and signals: elongation, net force and sum of tensions of every loop, with derivatives.
+
+Elongation ``delta = C theta``, net force of a loop ``T(delta) = t(d0 + delta) - t(d0 - delta)``:
+two preloaded cables. Effects add to elongation and tension, and may let a radius vary.
+"""
+
+from __future__ import annotations
+
+from tendon_ros.model.kernel.structure import (
+    CURL, CURVE_BELOW, CURVE_CELLS, CURVE_OFFSET, CURVE_RATE, CURVE_START, DELTA, ELONGATIONS,
+    EPOCH, Floats, Ints, LOOP_DAMPING, LOOP_PULLEY, M, N, PLAY, PRELOAD, RADIUS, RATE, SCALE,
+    SHIFT, SHIFT_D, SLACK, STATE_A, STATE_B, STATE_RATE, STATE_S, STATE_T, STATE_Z, TENSION,
+    TENSIONS, TENSION_D, TENSION_R, TOTAL, TOTAL_D, TURN, WIDTH, WINDINGS, WOUND,
+    elongation_law, tension_law, winding_law,
+)  # fmt: skip
+
+def clipped(value: float, low: float, high: float) -> float:
+    """Return the value, no less than low and no more than high."""
+    return low if value < low else (high if value > high else value)
+
+
+def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
+    """Return signal ``row`` at time t with its two derivatives: cubic Hermite, ends held."""
+    rows = int(s[3])
+    samples = int(s[2])
+    u = (t - s[0]) * s[1]
+    at = 4 + row * samples
+    to = at + rows * samples
+    if u <= 0.0:
+        return s[at], 0.0, 0.0
+    if u >= samples - 1:
+        return s[at + samples - 1], 0.0, 0.0
+    cell = int(u)
+    u -= cell
+    a = s[at + cell]
+    p = s[to + cell] / s[1]
+    q = s[to + cell + 1] / s[1]
+    rise = s[at + cell + 1] - a
+    b = 3.0 * rise - 2.0 * p - q
+    e = p + q - 2.0 * rise
+    return (
+        a + u * (p + u * (b + u * e)),
+        (p + u * (2.0 * b + 3.0 * u * e)) * s[1],
+        (2.0 * b + 6.0 * u * e) * s[1] * s[1],
+    )
+
+
+def cable(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float]:
+    """Return tension [N] and slope [N/m] of one cable of loop k at elongation x [m]."""
+    u = (x - m[CURVE_START + k]) * m[CURVE_RATE + k]
+    o = d[CURVE_OFFSET + k]
+    if u <= 0.0:
+        slope = m[CURVE_BELOW + k]
+        return m[o] + slope * (x - m[CURVE_START + k]), slope
+    cells = d[CURVE_CELLS + k]
+    beyond = 0.0
+    if u < cells:
+        cell = int(u)
+        u -= cell
+    else:  # beyond the last point the curve goes on straight
+        cell = cells - 1
+        beyond = u - cells
+        u = 1.0
+    o += 4 * cell
+    slope = m[o + 1] + u * (2.0 * m[o + 2] + 3.0 * u * m[o + 3])
+    value = m[o] + u * (m[o + 1] + u * (m[o + 2] + u * m[o + 3]))
+    return value + beyond * slope, slope * m[CURVE_RATE + k]
+
+
+def wind(m: Floats, d: Ints, w: Floats, at: int) -> None:
+    """Set the angles that the cables see, and how they turn with the pulleys."""
+    for i in range(N):
+        w[WOUND + i] = w[at + i]
+        w[TURN + i] = 1.0
+        w[CURL + i] = 0.0
+    for a in range(d[WINDINGS + 1]):
+        n = d[WINDINGS] + 4 * a
+        i = d[n + 1]
+        arc, slope, curl = winding_law(d[n], w[at + i], m, d[n + 2])
+        w[WOUND + i] += arc
+        w[TURN + i] += slope
+        w[CURL + i] += curl
+
+
+def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
+    """Set elongation, net force and sum of tensions of every loop, with derivatives."""
+    for k in range(M):
+        delta = 0.0
+        rate = 0.0
+        for e in range(WIDTH):
+            i = LOOP_PULLEY[WIDTH * k + e]
+            r = m[RADIUS + WIDTH * k + e]
+            delta += r * w[WOUND + i]
+            rate += r * w[TURN + i] * w[at + N + i]
+        w[DELTA + k] = delta
+        w[RATE + k] = rate
+        w[SHIFT + k] = 0.0
+        w[SHIFT_D + k] = 1.0
+    for a in range(d[ELONGATIONS + 1]):
+        n = d[ELONGATIONS] + 4 * a
+        k = d[n + 1]
+        z = d[n + 3]
+        value = w[at + 2 * N + z] if z >= 0 else 0.0
+        shift, by_d, by_z, dz, dz_d, dz_r, dz_z = elongation_law(
+            d[n], w[DELTA + k], w[RATE + k], value, w[EPOCH], m, d[n + 2]
+        )
+        w[SHIFT + k] += shift
+        w[SHIFT_D + k] += by_d
+        if z >= 0:
+            w[STATE_RATE + z] = dz
+            w[STATE_A + z] = dz_d
+            w[STATE_B + z] = dz_r
+            w[STATE_Z + z] = dz_z
+            w[STATE_T + z] = by_z
+    for k in range(M):
+        x = w[DELTA + k] + w[SHIFT + k]
+        inner = w[SHIFT_D + k]
+        half = 0.5 * m[PLAY + k]
+        if half > 0.0:
+            if x > half:
+                x -= half
+            elif x < -half:
+                x += half
+            else:
+                x = 0.0
+                inner = 0.0
+        first, slope = cable(m, d, k, m[PRELOAD + k] + x)
+        second, other = cable(m, d, k, m[PRELOAD + k] - x)
+        scale = m[SCALE + k]
+        w[TENSION + k] = scale * (first - second) + m[LOOP_DAMPING + k] * w[RATE + k]
+        w[TENSION_D + k] = scale * (slope + other) * inner
+        w[TENSION_R + k] = m[LOOP_DAMPING + k]
+        w[TOTAL + k] = scale * (first + second)
+        w[TOTAL_D + k] = scale * (slope - other) * inner
+        w[SLACK + k] = m[PRELOAD + k] - m[CURVE_START + k] - abs(x)
+    for a in range(d[ELONGATIONS + 1]):
+        n = d[ELONGATIONS] + 4 * a
+        z = d[n + 3]
+        if z >= 0:
+            k = d[n + 1]
+            w[STATE_S + z] = w[STATE_T + z] * w[TOTAL_D + k] / w[SHIFT_D + k]
+            w[STATE_T + z] *= w[TENSION_D + k] / w[SHIFT_D + k]
+    for a in range(d[TENSIONS + 1]):
+        n = d[TENSIONS] + 4 * a
+        k = d[n + 1]
+        z = d[n + 3]
+        value = w[at + 2 * N + z] if z >= 0 else 0.0
+        extra, by_d, by_r, by_z, dz, dz_d, dz_r, dz_z = tension_law(
+            d[n], w[DELTA + k], w[RATE + k], value, w[EPOCH], m, d[n + 2]
+        )
+        w[TENSION + k] += extra
+        w[TENSION_D + k] += by_d
+        w[TENSION_R + k] += by_r
+        if z >= 0:
+            w[STATE_RATE + z] = dz
+            w[STATE_A + z] = dz_d
+            w[STATE_B + z] = dz_r
+            w[STATE_Z + z] = dz_z
+            w[STATE_T + z] = by_z
+            w[STATE_S + z] = 0.0

@@ -1,0 +1,141 @@
+"""Ticks: what the sensors read, what the sampled controllers do about it, what is recorded."""
+
+from __future__ import annotations
+
+from tendon_ros.model.kernel.forces import evaluate, prescribe
+from tendon_ros.model.kernel.loops import clipped
+from tendon_ros.model.kernel.rosenbrock import between
+from tendon_ros.model.kernel.structure import (
+    ACCELERATION, ARM, BUDGET, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, FORCE, Floats,
+    INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MOTOR_BIAS, MOTOR_GAIN,
+    MOTOR_LIMIT, MOTOR_PULLEY, N, PAST, PERIOD, Q, READING, REFERENCE, REMEMBERS, RING, ROW,
+    SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX, SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED,
+    SENSOR_RESOLUTION, SENSOR_SOURCE, SIDE, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
+    WIDTH_ROW,
+)  # fmt: skip
+
+SMALLEST = 1e-10  # times nearer than this are one [s]
+
+def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
+    """Return the torque that motor j reports: its command, or what its motion asks for."""
+    i = MOTOR_PULLEY[j]
+    if d[DRIVE + i] == 0:
+        return c[COMMAND + j]
+    need = m[INERTIA + i] * w[ACCELERATION + i] - w[TORQUE + i] - w[SIDE + i] * w[BUDGET + i]
+    return (need - m[MOTOR_BIAS + j]) / m[MOTOR_GAIN + j]
+
+
+def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int) -> None:
+    """Let every sensor read the state ``w[at:]``, whose forces have been evaluated."""
+    tick = int(c[TICK])
+    slot = tick % RING
+    for q in range(Q):
+        source = SENSOR_SOURCE[q]
+        index = SENSOR_INDEX[q]
+        truth = 0.0
+        if source == 0:
+            truth = w[at + index]
+        elif source == 1:
+            truth = w[at + N + index]
+        elif source == 2:
+            truth = effort(m, d, w, c, index)
+        elif source == 3:
+            truth = w[FORCE + index]
+        elif source == 4:
+            truth = w[FORCE + index] * m[CONTACT_ARM + index]
+        else:
+            i = LOOP_PULLEY[index]
+            truth = -m[ARM + index] * w[TURN + i] * w[TENSION + index // WIDTH]
+        c[PAST + RING * q + slot] = truth
+        late = m[SENSOR_DELAY + q] / m[PERIOD]
+        back = int(late)
+        back = min(back, tick)
+        value = c[PAST + RING * q + (tick - back) % RING]
+        if late > back and tick > back:
+            older = c[PAST + RING * q + (tick - back - 1) % RING]
+            value += (late - back) * (older - value)
+        value = m[SENSOR_GAIN + q] * value + m[SENSOR_OFFSET + q]
+        if d[SENSOR_RECTIFIED + q] == 1:
+            value = abs(value)
+        if len(noise) > 0:
+            value += m[SENSOR_NOISE + q] * noise[Q * int(c[TICK] - c[DRAWN]) + q]
+        if m[SENSOR_RESOLUTION + q] > 0.0:
+            counts = value / m[SENSOR_RESOLUTION + q] + 0.5
+            whole = int(counts)
+            if whole > counts:
+                whole -= 1
+            value = whole * m[SENSOR_RESOLUTION + q]
+        c[READING + q] = value
+
+
+def record(
+    m: Floats, d: Ints, w: Floats, c: Floats, t: float, rows: Floats, every: int, at: int
+) -> None:
+    """Write one row: time, angles, velocities, efforts, loop forces, contact forces, readings."""
+    tick = int(c[TICK])
+    if tick % every != 0:
+        return
+    o = WIDTH_ROW * int(c[ROW])
+    if o + WIDTH_ROW > len(rows):
+        return
+    c[ROW] += 1.0
+    rows[o] = t
+    o += 1
+    for n in range(2 * N):
+        rows[o + n] = w[at + n]
+    o += 2 * N
+    for j in range(U):
+        rows[o + j] = effort(m, d, w, c, j)
+    o += U
+    for k in range(M):
+        rows[o + k] = w[TENSION + k]
+    o += M
+    for k in range(K):
+        rows[o + k] = w[FORCE + k]
+    o += K
+    for q in range(Q):
+        rows[o + q] = c[READING + q]
+
+
+def ticks_ahead(d: Ints, c: Floats, every: int) -> int:
+    """Return how many ticks to pass: to the next recorded one, if no sensor remembers."""
+    return 1 if d[REMEMBERS] == 1 else every - int(c[TICK]) % every
+
+
+def report(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, h: float,
+    noise: Floats, rows: Floats, every: int,
+) -> None:  # fmt: skip
+    """Record the ticks that the step just taken has passed, from its dense output."""
+    ahead = ticks_ahead(d, c, every)
+    due_at = (c[TICK] + ahead) * m[PERIOD]
+    while due_at <= t + h + SMALLEST:
+        part = min((due_at - t) / h, 1.0)
+        between(d, w, part, TRIAL)
+        prescribe(m, d, w, s, due_at, TRIAL)
+        evaluate(m, d, w, g, s, c, due_at, TRIAL)
+        c[TICK] += ahead
+        sense(m, d, w, c, noise, TRIAL)
+        record(m, d, w, c, due_at, rows, every, TRIAL)
+        ahead = ticks_ahead(d, c, every)
+        due_at = (c[TICK] + ahead) * m[PERIOD]
+
+
+def control(m: Floats, d: Ints, w: Floats, c: Floats, setpoint: Floats, o: int) -> None:
+    """Let every sampled controller (PID, limited) hold a new torque until the next tick."""
+    for j in range(U):
+        if d[REFERENCE + j] >= 0 or d[DRIVE + MOTOR_PULLEY[j]] == 1:
+            continue
+        error = setpoint[o + j] - c[READING + d[ENCODER + j]]
+        if c[LAST + j] > 1e300:  # the first tick has no past
+            c[LAST + j] = error
+        total = c[SUM + j] + m[PERIOD] * error
+        change_rate = (error - c[LAST + j]) / m[PERIOD]
+        c[LAST + j] = error
+        wish = m[KP + j] * error + m[KI + j] * total + m[KD + j] * change_rate
+        torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
+        if torque == wish:  # the integral rests while the limit holds
+            c[SUM + j] = total
+        c[COMMAND + j] = torque
+        applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
+        w[INPUT + MOTOR_PULLEY[j]] = clipped(applied, -m[MOTOR_LIMIT + j], m[MOTOR_LIMIT + j])
