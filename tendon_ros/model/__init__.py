@@ -1,0 +1,1 @@
+"""The instrument as a network, its files, and the one step by which it moves."""
