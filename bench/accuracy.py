@@ -26,7 +26,9 @@ def truth(folder: Path, *, seconds: float, continuous: bool) -> FloatArray:
     :return: shape (ticks, 5) [rad].
     """
     here = Path(__file__).parent
-    text = ''.join((here / f'{name}.py').read_text(encoding='utf-8') for name in ('reference', 'rig'))
+    text = ''.join(
+        (here / f'{name}.py').read_text(encoding='utf-8') for name in ('reference', 'rig')
+    )
     mark = hashlib.sha256(f'{text}{seconds}{continuous}'.encode()).hexdigest()[:12]
     path = folder / f'reference_{mark}.npy'
     if path.exists():

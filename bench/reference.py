@@ -56,7 +56,9 @@ class Reference:
         for k, contact in enumerate(one.contacts):
             for name, ratio in contact.route.items():
                 self._Q[k, one.index(name)] = ratio
-        self._budgets = [self._budget(use.effect, use.place, use.parameters) for use in one.effects]
+        self._budgets = [
+            self._budget(use.effect, use.place, use.parameters) for use in one.effects
+        ]
         self._dry = np.zeros(self._n, dtype=bool)
         self._dry[[i for i, _ in self._budgets]] = True
         self._motor = np.array([one.index(m.pulley) for m in one.motors], dtype=int)
@@ -70,8 +72,11 @@ class Reference:
         if effect == 'coulomb_friction':
             return i, lambda speed, load: values['torque']
         if effect == 'stribeck_friction':
-            return i, lambda speed, load: (
-                values['sliding'] + values['static'] / (1.0 + (speed / values['speed']) ** 2)
+            return (
+                i,
+                lambda speed, load: (
+                    values['sliding'] + values['static'] / (1.0 + (speed / values['speed']) ** 2)
+                ),
             )
         raise ValueError(f'the reference has no {effect}')
 
@@ -198,7 +203,10 @@ class Reference:
                         if value <= 0.0
                         else brentq(
                             lambda x, e=e, dense=dense: self._due(dense(x), low)[e],
-                            a, solver.t, xtol=1e-15, rtol=1e-15,
+                            a,
+                            solver.t,
+                            xtol=1e-15,
+                            rtol=1e-15,
                         )  # fmt: skip
                     )
                 which = int(fallen[int(np.argmin(roots))])

@@ -49,9 +49,7 @@ def _library(*, smooth: bool) -> Any:
     folder = Path(tempfile.mkdtemp(prefix='tendon_yardstick_'))
     target = folder / 'yardstick.so'
     macro = (f'-DSMOOTH={int(smooth)}',)
-    subprocess.run(
-        ['gcc', *FLAGS, *macro, str(SOURCE), '-o', str(target), '-lm'], check=True
-    )
+    subprocess.run(['gcc', *FLAGS, *macro, str(SOURCE), '-o', str(target), '-lm'], check=True)
     library = ctypes.CDLL(str(target))
     shutil.rmtree(folder)
     return library
@@ -75,8 +73,7 @@ class Yardstick:
         start, rate, cubic = uniform_cubic(one.curves[0])
         self._table = np.ascontiguousarray(cubic, dtype=np.float64)
         friction = {
-            use.place.removeprefix('pulley_'): use.parameters['coefficient']
-            for use in one.effects
+            use.place.removeprefix('pulley_'): use.parameters['coefficient'] for use in one.effects
         }
         m1, m2, m3 = (loop.route for loop in one.loops)
         contact = one.contacts[0]
