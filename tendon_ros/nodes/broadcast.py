@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from tendon_ros.bags.stamps import IntArray
 from tendon_ros.bags.topics import JOINT_TOPICS
-from tendon_ros.base.recording import FloatArray
 from tendon_ros.nodes.wire import Wire, wires_for
 
 
@@ -28,14 +26,24 @@ class Broadcast:
         self._wires: tuple[Wire, ...] = ()
         self._publishers: dict[str, Any] = {}
 
-    def publish(self, stamps: IntArray, values: Mapping[str, FloatArray]) -> None:
+    def publish(self, stamp_ns: int, values: Mapping[str, float]) -> None:
         """
-        Publish every channel, in the order of the stamps.
+        Publish every channel.
 
-        :param stamps: header stamps [ns], shape (n,).
-        :param values: by channel, shape (n,) each.
+        :param stamp_ns: header stamp [ns].
+        :param values: by channel.
         """
-        if values.keys() != self._channels:
+        self.prepare(values)
+        for wire in self._wires:
+            self._publishers[wire.topic].publish(wire.encode(stamp_ns, values))
+
+    def prepare(self, values: Iterable[str]) -> None:
+        """
+        Make the publishers of channels, which takes a while the first time.
+
+        :param values: names of channels.
+        """
+        if set(values) != self._channels:
             self._channels = frozenset(values)
             self._wires = wires_for(values)
             for wire in self._wires:
@@ -43,7 +51,3 @@ class Broadcast:
                     kind = JointState if wire.topic in JOINT_TOPICS else WrenchStamped
                     made = self._node.create_publisher(kind, wire.topic, 10)
                     self._publishers[wire.topic] = made
-        encoded = [(wire.topic, wire.encode(stamps, values)) for wire in self._wires]
-        for n in range(stamps.size):
-            for topic, messages in encoded:
-                self._publishers[topic].publish(messages[n])

@@ -48,7 +48,7 @@ class CrtkState:
         latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._publisher = node.create_publisher(StateMessage, 'operating_state', latched)
         node.create_subscription(
-            StringStamped, 'state_command', lambda message: command(message.string), 10
+            StringStamped, 'state_command', lambda message: command(str(message.string)), 10
         )
 
     def publish(self, *, always: bool = False) -> None:

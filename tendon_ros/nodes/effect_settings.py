@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from tendon_ros.base.effect import Effect
 from tendon_ros.effects import catalogue
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import place_index
+from tendon_ros.model.numbers import place_index
 from tendon_ros.nodes.settings import Setting
 
 #: what the names of all these parameters begin with

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 import math
 import time
-from typing import TypeAlias
 
 from geometry_msgs.msg import WrenchStamped
-import numpy as np
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -24,10 +22,13 @@ from tendon_ros.nodes.estimator import PROGRAM
 from tendon_ros.nodes.settings import Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
-Message: TypeAlias = JointState | WrenchStamped
+type Message = JointState | WrenchStamped
 
 #: measurements this old are no longer called live [s]
 STALE = 1.0
+
+#: measurements that may wait while the machine is busy: none shall be left out
+DEPTH = 500
 
 
 class EstimatorNode(TendonNode):
@@ -58,7 +59,7 @@ class EstimatorNode(TendonNode):
         topics = sorted({place_of(channel)[0] for channel in self._observer.needs})
         for topic in topics:
             kind = JointState if topic in JOINT_TOPICS else WrenchStamped
-            self.create_subscription(kind, topic, self._hearer(topic, instrument), 10)
+            self.create_subscription(kind, topic, self._hearer(topic, instrument), DEPTH)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.get_logger().info(
             f'ready after {time.monotonic() - start:.1f} s, listening to {", ".join(topics)}'
@@ -120,8 +121,7 @@ class EstimatorNode(TendonNode):
         finite = {name: value for name, value in estimate.values.items() if _finite(value)}
         for name in estimate.values.keys() - finite.keys():
             self.complain('estimates not finite', f'{name} is not a finite number; not published')
-        stamps = np.array([estimate.stamp_ns], dtype=np.int64)
-        self._broadcast.publish(stamps, {name: np.array([finite[name]]) for name in finite})
+        self._broadcast.publish(estimate.stamp_ns, finite)
         self._estimated += 1
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

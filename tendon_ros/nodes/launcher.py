@@ -84,6 +84,7 @@ def run(programs: Sequence[tuple[Program, Mapping[str, Value]]], ros: Sequence[s
     try:
         import rclpy
         from rclpy.signals import SignalHandlerOptions
+        from rclpy.utilities import try_shutdown
     except ImportError as error:
         raise TendonError(
             f'ROS 2 is not there ({error}); source its setup.bash, or pip install '
@@ -112,7 +113,7 @@ def run(programs: Sequence[tuple[Program, Mapping[str, Value]]], ros: Sequence[s
             node.close()
         for node in nodes:
             node.destroy_node()
-        rclpy.try_shutdown()
+        try_shutdown()
 
 
 def split_ros_arguments(argv: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -171,7 +172,7 @@ def _executor(*, events: bool) -> Any:
     from rclpy.executors import SingleThreadedExecutor
 
     try:
-        from rclpy.experimental import EventsExecutor
+        from rclpy.experimental.events_executor import EventsExecutor
     except ImportError:
         return SingleThreadedExecutor()
     return EventsExecutor() if events else SingleThreadedExecutor()

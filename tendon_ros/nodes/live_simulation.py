@@ -7,7 +7,7 @@ next period on, so the behaviour of the instrument does not depend on the loop's
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from threading import Lock
 
@@ -29,6 +29,12 @@ class Samples:
 
     stamps: IntArray
     values: Mapping[str, FloatArray]
+
+    def rows(self) -> Iterator[tuple[int, dict[str, float]]]:
+        """Yield each stamp [ns] with the value of every channel."""
+        columns = {name: column.tolist() for name, column in self.values.items()}
+        for n, stamp in enumerate(self.stamps.tolist()):
+            yield stamp, {name: column[n] for name, column in columns.items()}
 
 
 class LiveSimulation:
@@ -192,7 +198,7 @@ class LiveSimulation:
     def _setpoints(self, first: int, ticks: int) -> FloatArray:
         if self._motion is not None:
             period = self.instrument.control_period
-            return self._motion.at((first + np.arange(ticks)) * period)
+            return self._motion.at(period * np.arange(first, first + ticks, dtype=np.float64))
         return np.tile(np.array(list(self._held.values())), (ticks, 1))
 
     def _check(self, wanted: Mapping[str, float]) -> None:

@@ -1,4 +1,4 @@
-"""CRTK's operating state as a simulator has it: what commands do to it, and when motion is taken."""
+"""CRTK's operating state: what commands do to it, and when motion is taken."""
 
 from __future__ import annotations
 
@@ -66,7 +66,6 @@ class OperatingState:
         :raises StateError: with the command that mends it.
         """
         if self.name != 'ENABLED':
-            mend = (
-                'call the service reset' if self.name == 'FAULT' else "send state_command 'enable'"
-            )
+            fault = self.name == 'FAULT'
+            mend = 'call the service reset' if fault else 'send state_command enable'
             raise StateError(f'motion refused in state {self.name}; {mend}')

@@ -24,7 +24,7 @@ class ParameterCensus:
     def __init__(self, node: Node, hear: Hearer) -> None:
         self._node = node
         self._hear = hear
-        self._asked: dict[str, AsyncParameterClient] = {}
+        self._waiting: dict[str, AsyncParameterClient | None] = {}
 
     def look(self) -> None:
         """Ask the nodes that have appeared since the last call."""
@@ -33,13 +33,14 @@ class ParameterCensus:
             full = f'{namespace.rstrip("/")}/{name}'
             if namespace != own or name == self._node.get_name() or name.startswith('_'):
                 continue
-            if full not in self._asked:
-                self._asked[full] = AsyncParameterClient(self._node, full)
-            elif self._asked[full] is not None and self._asked[full].services_are_ready():
-                self._ask(full)
+            if full not in self._waiting:
+                self._waiting[full] = AsyncParameterClient(self._node, full)
+            client = self._waiting[full]
+            if client is not None and client.services_are_ready():
+                self._waiting[full] = None
+                self._ask(full, client)
 
-    def _ask(self, full: str) -> None:
-        client, self._asked[full] = self._asked[full], None
+    def _ask(self, full: str, client: AsyncParameterClient) -> None:
 
         def on_names(answer: Any) -> None:
             names = list(answer.result().result.names)

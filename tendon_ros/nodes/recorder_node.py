@@ -54,7 +54,7 @@ class RecorderNode(TendonNode):
         self._duration = float(values['duration'])
         self._drops = Drops()
         self._began: float | None = None
-        self._parameters: dict[str, Mapping[str, object]] = {}
+        self._found: dict[str, Mapping[str, object]] = {}
         self._subscriptions_by_topic: dict[str, Subscription] = {}
         self._refused: set[str] = set()
         path = str(values['out']) or time.strftime('rosbag2_%Y_%m_%d-%H_%M_%S')
@@ -116,7 +116,7 @@ class RecorderNode(TendonNode):
             message, topic, self._writer_of(topic, kind), qos, raw=True
         )
 
-    def _writer_of(self, topic: str, kind: str) -> Callable[[bytes, Mapping[str, Any]], None]:
+    def _writer_of(self, topic: str, kind: str) -> Callable[..., None]:
         """Return the callback of a topic."""
 
         def on_message(cdr: bytes, info: Mapping[str, Any]) -> None:
@@ -172,9 +172,9 @@ class RecorderNode(TendonNode):
             self.finished = True
 
     def _on_parameters(self, node: str, values: Mapping[str, object]) -> None:
-        self._parameters[node] = values
+        self._found[node] = values
         if not self.stopping.is_set():
-            self._bag.set_metadata('parameters', json.dumps(self._parameters, default=str))
+            self._bag.set_metadata('parameters', json.dumps(self._found, default=str))
 
 
 def _versions() -> dict[str, str]:

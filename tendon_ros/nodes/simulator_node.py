@@ -66,6 +66,10 @@ class SimulatorNode(TendonNode):
 
     def begin(self) -> None:
         """Start the clock of the physics."""
+        # The first round is slow; it happens before time begins.
+        samples = self._live.advance(time.monotonic())
+        if samples is not None:
+            self._broadcast.prepare(samples.values)
         self._live.reset(time.time_ns())
         self._thread.start()
 
@@ -87,8 +91,8 @@ class SimulatorNode(TendonNode):
         elif behind > self._slipped:
             level = Level.WARN
             text = (
-                f'cannot keep up: simulated time fell {behind - self._slipped:.3f} s behind in the '
-                'last second; lower the rate, or install numba'
+                f'cannot keep up: {behind - self._slipped:.3f} s of simulated time were lost in '
+                'the last second; lower the rate, or install numba'
             )
             self.get_logger().warning(text, throttle_duration_sec=5.0)
         self._slipped = behind
@@ -133,10 +137,6 @@ class SimulatorNode(TendonNode):
         simulation = Simulation(
             ready, seed=None if seed < 0 else seed, engine=str(values['engine'])
         )
-        simulation.run(
-            [[0.0] * len(ready.motors)]
-        )  # what is still to be compiled is compiled here
-        simulation.reset()
         self.get_logger().info(
             f'{instrument.name} ready after {time.monotonic() - start:.1f} s, '
             f'{simulation.engine} engine, publishing at {rate:g} Hz'
@@ -154,8 +154,9 @@ class SimulatorNode(TendonNode):
                 continue
             if samples is None:
                 continue
-            self._broadcast.publish(samples.stamps, samples.values)
-            self._published += samples.stamps.size
+            for stamp, row in samples.rows():
+                self._broadcast.publish(stamp, row)
+                self._published += 1
             self._crtk.publish()
 
     def _fail(self, error: SimulationError) -> None:

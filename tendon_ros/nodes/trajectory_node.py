@@ -10,7 +10,7 @@ import numpy as np
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from tendon_ros.bags.encoding import joint_layout
+from tendon_ros.bags.topics import joint_channel
 from tendon_ros.base.errors import TendonError, TrajectoryError
 from tendon_ros.base.recording import FloatArray
 from tendon_ros.model.instrument_file import load_instrument
@@ -22,6 +22,7 @@ from tendon_ros.nodes.motion import Motion
 from tendon_ros.nodes.settings import Value
 from tendon_ros.nodes.tendon_node import TendonNode
 from tendon_ros.nodes.trajectory import PROGRAM
+from tendon_ros.nodes.wire import wires_for
 
 #: how often to say that nothing is measured [s]
 REMIND = 5.0
@@ -55,7 +56,9 @@ class TrajectoryNode(TendonNode):
         self._heard = threading.Event()
         self._progress = 'waiting for the motors'
         self._sent_ns = 0
-        self._layout = joint_layout(self._joints, ['position'])
+        # A command looks like the set-points that the robot says it has.
+        names = [joint_channel('actuator/setpoint_js', j, 'position') for j in self._joints]
+        [self._wire] = wires_for(names)
         self._commands = self.create_publisher(JointState, 'actuator/servo_jp', 10)
         self._ear = self.create_subscription(
             JointState, 'actuator/measured_js', self._on_measured, 10, raw=True
@@ -122,8 +125,8 @@ class TrajectoryNode(TendonNode):
             now = time.monotonic()
             if self._patience and now - begin > self._patience:
                 self.failure = TrajectoryError(
-                    f'{self._ear.topic_name}: nothing measured for {self._patience:g} s; start the '
-                    'simulator or the robot, or look for another namespace or ROS_DOMAIN_ID'
+                    f'{self._ear.topic_name}: nothing measured for {self._patience:g} s; start '
+                    'the simulator or the robot, or look for another namespace or ROS_DOMAIN_ID'
                 )
                 return False
             if now - said > REMIND:
@@ -151,9 +154,8 @@ class TrajectoryNode(TendonNode):
     def _send(self, position: FloatArray) -> None:
         # Clients of a robot expect stamps that increase, also when the system's clock is set back.
         self._sent_ns = max(time.time_ns(), self._sent_ns + 1)
-        stamps = np.array([self._sent_ns], dtype=np.int64)
-        [message] = self._layout.encode(stamps, position[None, :])
-        self._commands.publish(message)
+        values = dict(zip(self._wire.channels, position.tolist(), strict=True))
+        self._commands.publish(self._wire.encode(self._sent_ns, values))
 
 
 def _settings_of(name: str, values: Mapping[str, Value]) -> dict[str, str | float]:

@@ -8,14 +8,13 @@ what a node publishes does not change, so its bytes are laid out once (:mod:`..b
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+import struct
 
 import numpy as np
 
 from tendon_ros.bags.encoding import joint_layout
 from tendon_ros.bags.layout import Layout, marks
 from tendon_ros.bags.messages import typestore
-from tendon_ros.bags.stamps import IntArray
 from tendon_ros.bags.topics import (
     joint_channel,
     JOINT_FIELDS,
@@ -24,28 +23,40 @@ from tendon_ros.bags.topics import (
     WRENCH,
     WRENCH_TOPICS,
 )
-from tendon_ros.base.recording import FloatArray
+
+_STAMP = struct.Struct('<II')
+_NUMBER = struct.Struct('<d')
 
 
-@dataclass(frozen=True)
 class Wire:
-    """One message: its topic, its layout, and the channel of each number in it."""
+    """
+    One message of one topic, encoded one at a time.
 
-    topic: str
-    layout: Layout
-    channels: tuple[str, ...]
+    :param topic: relative topic.
+    :param layout: its bytes.
+    :param channels: the channel of each number in it, in the layout's order.
+    """
 
-    def encode(self, stamps: IntArray, values: Mapping[str, FloatArray]) -> list[bytes]:
+    def __init__(self, topic: str, layout: Layout, channels: tuple[str, ...]) -> None:
+        self.topic = topic
+        self.channels = channels
+        numbers = marks(len(channels))
+        [cdr] = layout.encode(np.zeros(1, dtype=np.int64), np.array([numbers]))
+        self._starts = [cdr.index(_NUMBER.pack(mark)) for mark in numbers]
+        self._cdr = bytearray(cdr)
+
+    def encode(self, stamp_ns: int, values: Mapping[str, float]) -> bytes:
         """
-        Return serialised messages.
+        Return a serialised message.
 
-        :param stamps: header stamps [ns], shape (n,).
-        :param values: by channel, shape (n,) each; zero in a wrench where a channel is absent.
-        :return: n messages.
+        :param stamp_ns: header stamp [ns].
+        :param values: by channel; zero in a wrench where a channel is absent.
+        :return: its bytes.
         """
-        absent = np.zeros(stamps.size)
-        columns = [values.get(name, absent) for name in self.channels]
-        return self.layout.encode(stamps, np.stack(columns, axis=1))
+        _STAMP.pack_into(self._cdr, 4, *divmod(stamp_ns, 10**9))
+        for name, start in zip(self.channels, self._starts, strict=True):
+            _NUMBER.pack_into(self._cdr, start, values.get(name, 0.0))
+        return bytes(self._cdr)
 
 
 def wires_for(channels: Iterable[str]) -> tuple[Wire, ...]:
