@@ -1,9 +1,9 @@
 """
-The effect contract: what a file in ``tendon_ros.effects`` declares to become part of the catalogue.
+The effect contract: what a file in ``tendon_ros.effects`` declares to be in the catalogue.
 
 An effect either *modifies* numbers of the model, or adds a *law*, or both. A law is a function of
 scalars that returns its value and its partial derivatives, written with what the compiler of the
-kernel understands: arithmetic, ``abs``, ``min``, ``max``, ``if``, functions of ``math``. The hooks:
+kernel understands: arithmetic, ``abs``, ``min``, ``max``, ``if``, ``math``. The hooks:
 
 ``torque(theta, omega, t, *parameters) -> (torque, by_theta, by_omega)``
     a torque on a pulley [N m].
@@ -62,7 +62,7 @@ class Effect:
     One unmodelled physical effect.
 
     ``kinds``: the kinds of place where it can act (``pulley``, ``cable``, ``coupling``, ``motor``,
-    ``sensor``, ``contact``). ``modify(numbers, index, **parameters)`` changes numbers at the place.
+    ``sensor``, ``contact``). ``modify(numbers, index, **parameters)`` changes numbers there.
     ``law`` is the function for ``hook``; its parameters are all of ``parameters`` in order.
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
     """

@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import RecordingError, listed
+from tendon_ros.base.errors import listed, RecordingError
 
 FloatArray = NDArray[np.float64]
 

@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> None:
     instrument = load_instrument(args.instrument)
     channels = args.channels.split(',') if args.channels else None
     build(instrument, args.method, channels=channels)  # a mistake is told before any bag is read
-    squares, samples = 0.0, 0
+    squares, samples, unit = 0.0, 0, ''
     for bag in args.bag:
         out = Path(args.out)
         if len(args.bag) > 1:
@@ -78,10 +78,11 @@ def run(args: argparse.Namespace) -> None:
             continue
         squares += score.samples * score.rmse**2
         samples += score.samples
+        unit = score.unit
         print(
             f'{out}: {score.quantity} RMSE {score.rmse:.4g} {score.unit}, bias {score.bias:+.4g}, '
             f'range {score.span:.4g}; {score.coverage:.0%} within two standard deviations',
             flush=True,
         )
     if samples and len(args.bag) > 1:
-        print(f'all {len(args.bag)} bags: RMSE {np.sqrt(squares / samples):.4g} {score.unit}')
+        print(f'all {len(args.bag)} bags: RMSE {np.sqrt(squares / samples):.4g} {unit}')

@@ -2,8 +2,8 @@
 Encoders and torques with dynamics: an extended Kalman filter on the mechanics itself.
 
 State: angles and velocities of all pulleys, and the operating force as a random walk. The mean is
-carried by the same kernel that simulates, driven by the measured torques; its linearisation carries
-the covariance. The encoders of the motors correct both.
+carried by the same kernel that simulates, driven by the measured torques; its linearisation
+carries the covariance. The encoders of the motors correct both.
 """
 
 from __future__ import annotations
@@ -72,6 +72,7 @@ class KalmanObserver(Observer):
 
     def _reset(self) -> None:
         self._begun = False
+        self._last_effort = np.zeros(len(self._driven))
 
     def _begin(self, position: FloatArray) -> None:
         """Start at rest, cables as they are without load."""

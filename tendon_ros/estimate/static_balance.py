@@ -108,7 +108,7 @@ class StaticBalanceObserver(Observer):
         self._balanced = [
             i for i in range(len(one.pulleys)) if i not in measured and i not in unknown
         ]
-        rows = [row.name for row in (*one.loops, *one.couplings)]
+        rows = [row.name for row in one.links]
         count = len(self._balanced) + len(self._torques)
         self._routing = one.routing()
         self._fixed = [i for _, i in self._angles]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.effects import find
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import place_index
+from tendon_ros.model.numbers import place_index
 from tendon_ros.model.quantity import parsed, written
 
 

@@ -31,7 +31,8 @@ from tendon_ros import __version__
 from tendon_ros.base.effect import Effect
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.effects import catalogue
-from tendon_ros.model.layout import law_numbers, Structure
+from tendon_ros.model.layout import law_numbers
+from tendon_ros.model.structure import Structure
 
 #: the kernel's files, in the order in which they are joined; they are read, never imported
 PARTS = ('loops', 'forces', 'linear', 'rosenbrock', 'events', 'sensing', 'motion')

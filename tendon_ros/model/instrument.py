@@ -194,6 +194,11 @@ class Instrument:
         driven = set(self.driven)
         return tuple(name for name in self.pulley_names if name not in driven)
 
+    @property
+    def links(self) -> tuple[Loop | Coupling, ...]:
+        """What joins pulleys elastically: all loops, then all couplings."""
+        return (*self.loops, *self.couplings)
+
     def index(self, pulley: str) -> int:
         """
         Return the position of a pulley in every array of angles.

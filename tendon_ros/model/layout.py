@@ -1,270 +1,28 @@
 """
-From an instrument with its effects to the kernel's names, constants and arrays.
+From an instrument with its effects to the kernel's flat arrays.
 
-Three things are settled here and nowhere else: which constants a compiled kernel has
-(:class:`Structure`), where each number lies in the flat arrays, and how effects turn into numbers
-and laws. Pulleys are put in reverse Cuthill-McKee order, so that the network's matrix is banded.
+How effects turn into numbers and laws is settled here; where each number lies is settled by
+:mod:`tendon_ros.model.structure`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from tendon_ros.base.effect import HOOKS
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.effects import catalogue, find
 from tendon_ros.model.cable import elongation_at, uniform_cubic
-from tendon_ros.model.instrument import contact_place, EffectUse, Instrument
+from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.numbers import Numbers, place_index
+from tendon_ros.model.structure import RING, Structure, structure_of
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-SENSOR_SOURCES = (
-    'angle',
-    'velocity',
-    'motor_torque',
-    'contact_force',
-    'contact_torque',
-    'loop_torque',
-)
-
-#: the longest delay of a sensor, in controller periods
-RING = 64
-
-#: sizes of the named places in each array, in terms of the sizes of the network
-PLACES: Mapping[str, Mapping[str, str]] = {
-    'm': {
-        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'RADIUS': 'M*WIDTH', 'ARM': 'M*WIDTH',
-        'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M',
-        'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
-        'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
-        'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U', 'KP': 'U',
-        'KI': 'U', 'KD': 'U', 'LIMIT': 'U', 'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q',
-        'SENSOR_DELAY': 'Q', 'SENSOR_RESOLUTION': 'Q', 'SENSOR_NOISE': 'Q', 'PERIOD': '1',
-        'TOLERANCE': '1', 'STILL': '1',
-    },
-    'd': {
-        'DRIVE': 'N', 'MOTION': 'N', 'PUSH': 'N', 'REFERENCE': 'U', 'ENCODER': 'U',
-        'INTEGRAL': 'U', 'BRISTLE': 'N', 'DRY': 'N', 'CURVE_CELLS': 'M', 'CURVE_OFFSET': 'M',
-        'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1', 'ACTIVE': '1',
-        'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1', 'SWITCH': '1',
-        'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'TENSIONS': '2', 'WINDINGS': '2',
-    },
-    'w': {
-        'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'ACCELERATION': 'N',
-        'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M', 'TENSION': 'M',
-        'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
-        'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
-        'BUDGET_W': 'N', 'BUDGET_L': 'N', 'SIDE': 'N', 'GAP': 'K', 'FORCE': 'K', 'FORCE_Q': 'K',
-        'FORCE_V': 'K', 'STATE_RATE': 'STATES', 'STATE_A': 'STATES', 'STATE_B': 'STATES',
-        'STATE_Z': 'STATES', 'STATE_T': 'STATES', 'STATE_S': 'STATES', 'J_LOOP': 'M',
-        'J_LOOP_RATE': 'M', 'J_TOTAL': 'M', 'J_RADIUS': 'M*WIDTH', 'J_ARM': 'M*WIDTH',
-        'J_GRIP': 'M*WIDTH', 'J_ANGLE': 'N', 'J_SPEED': 'N', 'J_CONTACT': 'K',
-        'J_CONTACT_RATE': 'K', 'J_A': 'STATES', 'J_B': 'STATES', 'J_Z': 'STATES',
-        'J_T': 'STATES', 'J_S': 'STATES', 'F': 'DIM', 'FIRST': 'DIM', 'START': 'DIM',
-        'TRIAL': 'DIM', 'NEXT': 'DIM', 'STAGE': '6*DIM', 'RIGHT': 'DIM', 'OUTER': 'DIM',
-        'KAPPA': 'M', 'SIGMA': 'M', 'CHI': 'M', 'MATRIX': 'N*SPAN', 'SLACK_START': 'M',
-        'PENDING': 'N+K+M',
-    },
-    'c': {
-        'CLOCK': '1', 'STEP': '1', 'TICK': '1', 'COMMAND': 'U', 'SUM': 'U', 'LAST': 'U',
-        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'PAST': 'Q*RING',
-    },
-    'g': {'MODE': 'N', 'TOUCH': 'K', 'COUNT': '3'},
-}  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Structure:
-    """
-    What a compiled kernel is specialised to; instruments with equal structure share one.
-
-    ``order[i]`` is the instrument's index of the pulley at place i of the kernel.
-    """
-
-    order: tuple[int, ...]
-    loop_pulley: tuple[tuple[int, ...], ...]
-    contact_pulley: tuple[tuple[int, ...], ...]
-    motor_pulley: tuple[int, ...]
-    sensor_source: tuple[int, ...]
-    sensor_index: tuple[int, ...]
-
-    @cached_property
-    def constants(self) -> Mapping[str, int | tuple[int, ...]]:
-        """Every name of ``kernel.structure`` with its value."""
-        rows = (*self.loop_pulley, *self.contact_pulley)
-        width = max((len(row) for row in rows), default=1)
-        band = max((max(row) - min(row) for row in rows if row), default=0)
-        sizes: dict[str, int] = {
-            'N': len(self.order), 'M': len(self.loop_pulley), 'K': len(self.contact_pulley),
-            'U': len(self.motor_pulley), 'Q': len(self.sensor_source), 'WIDTH': width,
-            'BAND': band, 'SPAN': 2 * band + 1, 'RING': RING,
-        }  # fmt: skip
-        sizes['STATES'] = sizes['N'] + sizes['U'] + 2 * sizes['M']
-        sizes['DIM'] = 2 * sizes['N'] + sizes['STATES']
-        sizes['WIDTH_ROW'] = 1 + 2 * sizes['N'] + sizes['U'] + sizes['M'] + sizes['K'] + sizes['Q']
-        out: dict[str, int | tuple[int, ...]] = dict(sizes)
-        for array, places in PLACES.items():
-            at = 0
-            for name, size in places.items():
-                out[name] = at
-                at += _product(size, sizes)
-            out[f'LENGTH_{array}'] = at
-        out['LOOP_PULLEY'] = _padded(self.loop_pulley, width)
-        out['CONTACT_PULLEY'] = _padded(self.contact_pulley, width)
-        out['MOTOR_PULLEY'] = self.motor_pulley
-        out['SENSOR_SOURCE'] = self.sensor_source
-        out['SENSOR_INDEX'] = self.sensor_index
-        return out
-
-    def __getitem__(self, name: str) -> int:
-        value = self.constants[name]
-        if isinstance(value, tuple):
-            raise TypeError(f'{name} is a table')
-        return value
-
-    def length(self, array: str) -> int:
-        """Return the length of the fixed part of one of the kernel's arrays."""
-        return self[f'LENGTH_{array}']
-
-
-def _product(size: str, sizes: Mapping[str, int]) -> int:
-    """Return the value of a size such as ``6*DIM`` or ``N+K+M``."""
-    total = 0
-    for term in size.split('+'):
-        value = 1
-        for name in term.split('*'):
-            value *= int(name) if name.isdigit() else sizes[name]
-        total += value
-    return total
-
-
-def _padded(rows: Sequence[Sequence[int]], width: int) -> tuple[int, ...]:
-    return tuple(i for row in rows for i in (*row, *([row[0]] * (width - len(row)))))
-
-
-def structure_of(instrument: Instrument) -> Structure:
-    """
-    Return what the kernel is specialised to for an instrument.
-
-    :param instrument: the network.
-    :return: its structure, pulleys in an order that keeps the matrix banded.
-    """
-    n = len(instrument.pulleys)
-    routes = [row.route for row in (*instrument.loops, *instrument.couplings)]
-    contacts = [c.route for c in instrument.contacts]
-    joined = np.eye(n)
-    for route in (*routes, *contacts):
-        for a in route:
-            for b in route:
-                joined[instrument.index(a), instrument.index(b)] = 1.0
-    order = tuple(int(i) for i in reverse_cuthill_mckee(csr_array(joined), symmetric_mode=True))
-    place = {instrument.pulley_names[i]: at for at, i in enumerate(order)}
-    loop_pulley = tuple(tuple(place[name] for name in route) for route in routes)
-    contact_pulley = tuple(tuple(place[name] for name in route) for route in contacts)
-    width = max((len(row) for row in (*loop_pulley, *contact_pulley)), default=1)
-    source: list[int] = []
-    index: list[int] = []
-    through = [row.name for row in (*instrument.loops, *instrument.couplings)]
-    for sensor in instrument.sensors:
-        source.append(SENSOR_SOURCES.index(sensor.kind))
-        if sensor.kind in ('angle', 'velocity'):
-            index.append(place[sensor.of])
-        elif sensor.kind == 'motor_torque':
-            index.append(instrument.motor_names.index(sensor.of))
-        elif sensor.kind == 'loop_torque':
-            k = through.index(sensor.through)
-            index.append(width * k + loop_pulley[k].index(place[sensor.of]))
-        else:
-            index.append([c.name for c in instrument.contacts].index(sensor.of))
-    return Structure(
-        order=order,
-        loop_pulley=loop_pulley,
-        contact_pulley=contact_pulley,
-        motor_pulley=tuple(place[m.pulley] for m in instrument.motors),
-        sensor_source=tuple(source),
-        sensor_index=tuple(index),
-    )
-
-
-@dataclass
-class Numbers:
-    """The numbers of a model by name, in the instrument's order: what effects may modify."""
-
-    instrument: Instrument
-    kind: str = ''  # of the place that an effect is about to modify
-    values: dict[str, FloatArray] = field(init=False)
-
-    def __post_init__(self) -> None:
-        one = self.instrument
-        rows = (*one.loops, *one.couplings)
-        gear = {m.pulley: m.gear_ratio**2 * m.rotor_inertia for m in one.motors}
-        self.values = {
-            'inertia': np.array([p.inertia + gear.get(p.name, 0.0) for p in one.pulleys]),
-            'damping': np.array([p.damping for p in one.pulleys]),
-            'breakaway': np.zeros(len(one.pulleys)),
-            'radius': one.routing(),
-            'arm': one.routing(),
-            'pretension': np.array([getattr(row, 'pretension', 0.0) for row in rows]),
-            'scale': np.ones(len(rows)),
-            'loop_damping': np.array([row.damping for row in rows]),
-            'play': np.zeros(len(rows)),
-            'contact_stiffness': np.array([c.stiffness for c in one.contacts]),
-            'contact_damping': np.array([c.damping for c in one.contacts]),
-            'contact_position': np.array([c.position for c in one.contacts]),
-            'motor_gain': np.ones(len(one.motors)),
-            'motor_bias': np.zeros(len(one.motors)),
-            'motor_limit': np.array([min(m.torque_limit, 1e300) for m in one.motors]),
-            'motor_pulley': np.array([one.index(m.pulley) for m in one.motors]),
-            'sensor_gain': np.ones(len(one.sensors)),
-            'sensor_offset': np.zeros(len(one.sensors)),
-            'sensor_delay': np.zeros(len(one.sensors)),
-            'sensor_rectified': np.zeros(len(one.sensors)),
-        }
-        for k, row in enumerate(one.loops):
-            for name, sign in row.torque_sign.items():
-                self.values['arm'][k, one.index(name)] *= sign
-
-    def __getitem__(self, name: str) -> FloatArray:
-        return self.values[name]
-
-    def loops_on(self, pulley: int) -> Sequence[int]:
-        """Return the loops and couplings that touch a pulley."""
-        return [int(k) for k in np.flatnonzero(self.values['radius'][:, pulley])]
-
-
-def place_index(instrument: Instrument, place: str) -> tuple[str, int]:
-    """
-    Return the kind of a place and its index among those of its kind.
-
-    :param instrument: the instrument.
-    :param place: a name by the contract, such as ``pulley_3`` or ``cable_L3``.
-    :return: kind (pulley, cable, coupling, motor, sensor, contact) and index; couplings are
-        counted after the loops.
-    :raises EffectError: where there is no such place.
-    """
-    tables: Mapping[str, Sequence[str]] = {
-        'pulley': [f'pulley_{p.name}' for p in instrument.pulleys],
-        'cable': [f'cable_{loop.name}' for loop in instrument.loops],
-        'coupling': [f'coupling_{c.name}' for c in instrument.couplings],
-        'motor': [f'motor_{m.name}' for m in instrument.motors],
-        'sensor': [s.name for s in instrument.sensors],
-        'contact': [contact_place(instrument, c) for c in instrument.contacts],
-    }
-    for kind, names in tables.items():
-        if place in names:
-            index = names.index(place)
-            return kind, index + (len(instrument.loops) if kind == 'coupling' else 0)
-    raise EffectError(
-        f'{instrument.name}: no place {place!r}; it has {listed(instrument.places())}'
-    )
 
 
 @dataclass(frozen=True)
@@ -413,7 +171,7 @@ class _Packer:
                 f'{one.name}: a sensor is delayed by more than {RING - 2} controller periods '
                 f'({(RING - 2) * one.control_period:g} s), which is all that is remembered'
             )
-        _put(d, at['SENSOR_RECTIFIED'], numbers['sensor_rectified'] >= 0.5)
+        _put(d, at['SENSOR_RECTIFIED'], (numbers['sensor_rectified'] >= 0.5).astype(np.float64))
         _put(m, at['SENSOR_RESOLUTION'], [s.resolution for s in one.sensors])
         _put(m, at['SENSOR_NOISE'], [s.noise for s in one.sensors])
         for j, motor in enumerate(one.motors):
@@ -457,12 +215,12 @@ class _Packer:
         for hook in HOOKS:
             d[at[f'{hook.upper()}S']] = at.length('d') + len(tail_d)
             d[at[f'{hook.upper()}S'] + 1] = len(self.laws[hook])
-            for number, place, values, stateful in self.laws[hook]:
+            for number, where, values, stateful in self.laws[hook]:
                 state = -1
                 if stateful:
                     state = len(states)
-                    states.append((place, -1))
-                tail_d += [number, place, at.length('m') + len(tail_m), state]
+                    states.append((where, -1))
+                tail_d += [number, where, at.length('m') + len(tail_m), state]
                 tail_m += values
         if len(states) > at['STATES']:
             raise EffectError(

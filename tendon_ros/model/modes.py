@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.layout import Numbers
+from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.statics import Statics
 
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.model.engine import Engine, engine_for
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.layout import Arrays, Structure
+from tendon_ros.model.layout import Arrays
 from tendon_ros.model.signals import Signals
+from tendon_ros.model.structure import Structure
 
 FloatArray = NDArray[np.float64]
 

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import arrays_of, Structure
+from tendon_ros.model.layout import arrays_of
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
+from tendon_ros.model.structure import Structure
 
 FloatArray = NDArray[np.float64]
 

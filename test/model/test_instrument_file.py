@@ -14,7 +14,7 @@ from tendon_ros.effects import catalogue
 from tendon_ros.model.effect_use import checked_use
 from tendon_ros.model.instrument import EffectUse, Pulley, Sensor
 from tendon_ros.model.instrument_file import find_instrument, load_instrument, save_instrument
-from tendon_ros.model.layout import place_index
+from tendon_ros.model.numbers import place_index
 
 INSTALLED = sorted(path.stem for path in config_path('instruments').glob('*.yaml'))
 

@@ -2,8 +2,8 @@
 The names that the engine binds before it joins the kernel's files.
 
 Only declared here, so that readers, editors and type checkers know them; the values are those of
-the instrument at hand and are written by :mod:`tendon_ros.model.layout`. Everything numeric that a
-fit may move (radii, inertias, curves) lies in the array ``m`` instead, so that no fit recompiles.
+the instrument at hand and are written by :mod:`tendon_ros.model.structure`. Everything numeric
+that a fit may move (radii, inertias, curves) lies in the array ``m``, so that no fit recompiles.
 
 The arrays of the kernel, all flat, pulleys in the kernel's own order (see ``layout``):
 

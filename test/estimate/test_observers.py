@@ -1,0 +1,137 @@
+"""The three methods find the force and the inner pulleys, and say how well they know them."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.errors import InstrumentError, RecordingError
+from tendon_ros.bags.reader import read_recording
+from tendon_ros.estimate import METHODS, Measurement, build, estimate_recording
+from tendon_ros.estimate.offline import measurements
+from tendon_ros.estimate.score import scored
+from tendon_ros.model.instrument_file import load_instrument
+
+#: largest error of the force [N], and of an inner angle [rad], without noise: what is left is the
+#: rounding of the encoders, and inertia where a method leaves it out
+LIMITS = {'contact_angle': (0.25, 3e-4), 'static_balance': (0.35, 6e-4), 'dynamic': (0.35, 6e-4)}
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_force_and_inner_angles_of_a_simulated_press(method, bench, pressing, rms):
+    """On the model's own data every method meets the truth within the encoders' rounding."""
+    estimated = estimate_recording(pressing, build(bench, method))
+    force, angle = LIMITS[method]
+    estimate = estimated['estimate/force']
+    assert pressing['load_cell/force'].value.max() > 40.0
+    assert rms(estimate.value - pressing['load_cell/force'].at(estimate.time)) < force
+    for name in bench.inner:
+        own = estimated[f'estimate/pulley_{name}/position']
+        true = pressing[f'pulley/pulley_{name}/position'].at(own.time)
+        assert rms(own.value - true) < angle, name
+
+
+def test_no_force_is_found_where_nothing_is_touched(bench, free_recording, rms):
+    """A free motion is not taken for a force; the static method owes what inertia does, no more."""
+    found = {
+        method: rms(
+            estimate_recording(free_recording, build(bench, method))['estimate/force'].value
+        )
+        for method in ('static_balance', 'dynamic')
+    }
+    assert found['static_balance'] < 1.0
+    assert found['dynamic'] < 0.2 * found['static_balance']
+
+
+@pytest.mark.parametrize('method', ['static_balance', 'dynamic'])
+def test_stated_uncertainty_covers_the_error(method, bench, noisy):
+    """With noise, two standard deviations hold at least 90 % of the samples, and are no excuse."""
+    recording = estimate_recording(noisy, build(bench, method))
+    score = scored(recording)
+    assert score is not None
+    assert score.coverage > 0.9
+    assert np.median(recording['estimate/force_std'].value) < 5.0 * score.rmse
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_one_at_a_time_is_the_same_as_a_recording(method, bench, pressing):
+    """Live and offline are one path: bit for bit."""
+    observer = build(bench, method)
+    some = list(measurements(pressing, observer.needs))[:300]
+    live = [observer.update(m).values['estimate/force'] for m in some]
+    offline = estimate_recording(pressing, build(bench, method))['estimate/force'].value[:300]
+    assert np.array_equal(live, offline)
+
+
+def test_reset_forgets(bench, pressing):
+    """After a reset the same measurements give the same estimates."""
+    observer = build(bench, 'dynamic')
+    some = list(measurements(pressing, observer.needs))[:50]
+    first = [observer.update(m).values for m in some]
+    observer.reset()
+    assert [observer.update(m).values for m in some] == first
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_bad_measurements_are_refused_and_do_no_harm(method, bench, pressing):
+    """NaN, a missing channel and a stamp that steps back raise; the next good one goes on."""
+    observer, untouched = build(bench, method), build(bench, method)
+    some = list(measurements(pressing, observer.needs))[:4]
+    for m in some[:3]:
+        observer.update(m)
+        untouched.update(m)
+    name = observer.needs[0]
+    bad = Measurement(some[3].stamp_ns, {**some[3].values, name: float('nan')})
+    with pytest.raises(RecordingError, match='not a finite number'):
+        observer.update(bad)
+    lacking = {k: v for k, v in some[3].values.items() if k != name}
+    with pytest.raises(RecordingError, match=name):
+        observer.update(Measurement(some[3].stamp_ns, lacking))
+    with pytest.raises(RecordingError, match='does not come after'):
+        observer.update(some[1])
+    assert observer.update(some[3]) == untouched.update(some[3])
+
+
+def test_channels_that_cannot_tell_the_force_are_refused(bench):
+    """Too few torques, unknown channels and unknown methods name the mend."""
+    with pytest.raises(InstrumentError, match='at least one angle and one torque'):
+        build(bench, 'static_balance', channels=['actuator/pulley_M/position'])
+    with pytest.raises(InstrumentError, match="no sensor gives 'actuator/pulley_M/speed'"):
+        build(bench, 'static_balance', channels=['actuator/pulley_M/speed'])
+    with pytest.raises(InstrumentError, match='contact_angle'):
+        build(bench, 'kalman')
+    with pytest.raises(InstrumentError, match='no operating force'):
+        build(load_instrument('single_body'), 'static_balance')
+
+
+def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
+    """The error lists what the recording has."""
+    from tendon_ros.base.recording import Recording
+
+    kept = {k: c for k, c in pressing.channels.items() if k != 'actuator/pulley_L/effort'}
+    with pytest.raises(RecordingError, match='actuator/pulley_L/effort'):
+        estimate_recording(Recording('cut', kept), build(bench, 'static_balance'))
+
+
+def test_shaft_torque_gives_the_jaw_torque(rms):
+    """On the grasper's file, spindle torque and angle alone give the torque at the jaw."""
+    from tendon_ros.model.session import simulate
+    from tendon_ros.model.trajectory_choice import chosen
+
+    grasper = load_instrument('davinci_grasper')
+    profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
+    recording = simulate(grasper, profile, rate=500.0)
+    channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
+    estimated = estimate_recording(
+        recording, build(grasper, 'static_balance', channels=channels)
+    )['estimate/torque']
+    truth = recording['load_cell/torque']
+    assert truth.value.max() > 0.02
+    assert rms(estimated.value - truth.at(estimated.time)) < 0.05 * truth.value.max()
+
+
+def test_a_bench_of_another_make(bench, practice, rms):
+    """On a rig that is not this model, without effects, the force is found to 0.3 N of 44 N."""
+    recording = read_recording(practice / 'case_00' / 'contact')
+    measured = recording['load_cell/force']
+    for method in METHODS:
+        estimate = estimate_recording(recording, build(bench, method))['estimate/force']
+        assert rms(estimate.value - measured.at(estimate.time)) < 0.3, method
