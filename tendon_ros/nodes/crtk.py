@@ -47,9 +47,11 @@ class CrtkState:
         self._message = StateMessage
         latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._publisher = node.create_publisher(StateMessage, 'operating_state', latched)
-        node.create_subscription(
-            StringStamped, 'state_command', lambda message: command(str(message.string)), 10
-        )
+
+        def on_command(message: Any) -> None:
+            command(str(message.string))
+
+        node.create_subscription(StringStamped, 'state_command', on_command, 10)
 
     def publish(self, *, always: bool = False) -> None:
         """

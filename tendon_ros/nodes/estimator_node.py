@@ -30,6 +30,9 @@ STALE = 1.0
 #: measurements that may wait while the machine is busy: none shall be left out
 DEPTH = 500
 
+#: part of the time spent on estimates above which measurements pile up
+FULL = 0.9
+
 
 class EstimatorNode(TendonNode):
     """
@@ -55,6 +58,7 @@ class EstimatorNode(TendonNode):
         self._last_ns: int | None = None
         self._arrived = -math.inf
         self._estimated = 0
+        self._busy = 0.0
         self._counted_at = time.monotonic()
         topics = sorted({place_of(channel)[0] for channel in self._observer.needs})
         for topic in topics:
@@ -68,11 +72,13 @@ class EstimatorNode(TendonNode):
     def health(self) -> tuple[Level, str, Mapping[str, object]]:
         """Return whether measurements come, and how late they are."""
         now = time.monotonic()
-        rate = self._estimated / (now - self._counted_at)
-        self._estimated, self._counted_at = 0, now
+        passed = now - self._counted_at
+        rate, load = self._estimated / passed, self._busy / passed
+        self._estimated, self._busy, self._counted_at = 0, 0.0, now
         details: dict[str, object] = {
             'method': self._method,
             'estimates [Hz]': rate,
+            'load': load,
             'incomplete measurements': self._together.dropped,
         }
         if self._last_ns is not None:
@@ -80,6 +86,13 @@ class EstimatorNode(TendonNode):
         if now - self._arrived > STALE:
             ever = 'no measurement yet' if self._last_ns is None else 'no measurement any more'
             return Level.STALE, f'{ever}; it needs {", ".join(self._observer.needs)}', details
+        if load > FULL:
+            text = (
+                f'{self._method} cannot keep up with the measurements, some get lost; choose '
+                'another method, or lower the rate of the measurements'
+            )
+            self.get_logger().warning(text, throttle_duration_sec=5.0)
+            return Level.WARN, text, details
         return Level.OK, f'estimating by {self._method}', details
 
     def _hearer(self, topic: str, instrument: Instrument) -> Callable[[Message], None]:
@@ -88,6 +101,7 @@ class EstimatorNode(TendonNode):
         joints = [f'pulley_{name}' for name in (instrument.driven if motors else instrument.inner)]
 
         def on_message(message: Message) -> None:
+            begin = time.monotonic()
             try:
                 values = values_of(topic, message, joints)
                 bad = [n for n in values if n in self._observer.needs and not _finite(values[n])]
@@ -99,6 +113,7 @@ class EstimatorNode(TendonNode):
                     self._take(measurement)
             except TendonError as error:
                 self.complain('measurements left out', f'{topic}: {error}')
+            self._busy += time.monotonic() - begin
 
         return on_message
 

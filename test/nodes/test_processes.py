@@ -20,6 +20,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.topics import TOPIC_TYPES
+from tendon_ros.base.recording import Channel
 from tendon_ros.base.resources import config_path
 from tendon_ros.estimate import build, estimate_recording
 from tendon_ros.model.instrument_file import load_instrument
@@ -111,6 +112,12 @@ def test_a_bag_tells_how_it_was_made(bag):
 def test_offline_gives_exactly_the_numbers_of_the_live_node(bag):
     path, _ = bag
     recording = read_recording(path)
+    # The recorder was there before the estimator; offline has to begin where that began.
+    begin = recording['estimate/force'].time[0]
+    recording = recording.with_channels(
+        Channel(c.name, c.time[c.time >= begin], c.value[c.time >= begin])
+        for c in recording.channels.values()
+    )
     offline = estimate_recording(recording, build(load_instrument('paper_rig'), 'contact_angle'))
     for name in ('estimate/force', 'estimate/pulley_1/position', 'estimate/pulley_3/position'):
         live, again = recording[name], offline[name]
@@ -118,6 +125,7 @@ def test_offline_gives_exactly_the_numbers_of_the_live_node(bag):
         after = np.rint(again.time * 1e9).astype(int)
         common, mine, theirs = np.intersect1d(stamps, after, return_indices=True)
         assert common.size > 1000, name
+        assert common.size == stamps.size, name
         assert np.array_equal(live.value[mine], again.value[theirs]), name
 
 
@@ -234,7 +242,6 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
         message.header.stamp.nanosec = stamp_ms * 10**6
         measured.publish(message)
 
-    client.wait(lambda: client.node.count_publishers('/alone/body/measured_cf') >= 0, '')
     send(1, [0.05, 0.0])
     client.wait(lambda: client.node.count_publishers('/alone/body/measured_cf') > 0, 'no estimate')
     time.sleep(0.3)
@@ -249,8 +256,8 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
     client.wait(lambda: force and stamps_of(force[-1:])[0] == second + 20 * 10**6, 'no recovery')
     assert stamps_of(force) == [second + 10 * 10**6, second + 20 * 10**6]
     assert all(math.isfinite(message.wrench.force.y) for message in force)
-    for text in ('not a finite number; left out', 'values of position', 'before the last one'):
-        assert text in estimator.said.replace('nan; left out', 'not a finite number; left out')
+    for text in ('is nan; left out', 'values of position', 'before the last one'):
+        assert text in estimator.said, text
     assert client.call('/alone/estimator/reset', Trigger, Trigger.Request()).success
     send(1, [0.05, 0.0])
     client.wait(lambda: stamps_of(force[-1:])[0] == second + 10**6, 'not begun anew')

@@ -8,7 +8,11 @@ from geometry_msgs.msg import WrenchStamped
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
+from tendon_ros.base.resources import config_path
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.simulation import Simulation
 from tendon_ros.nodes.conversions import from_stamp, values_of
+from tendon_ros.nodes.live_simulation import LiveSimulation
 from tendon_ros.nodes.wire import wires_for
 
 STAMP = 1_700_000_000_123_456_789
@@ -54,3 +58,15 @@ def test_joints_with_other_fields_travel_apart():
         ('pulley/pulley_1/position',),
         ('pulley/pulley_2/position', 'pulley/pulley_2/effort'),
     ]
+
+
+@pytest.mark.parametrize(
+    'path', sorted(config_path('instruments').glob('*.yaml')), ids=lambda p: p.stem
+)
+def test_every_instrument_has_topics_for_what_it_measures(path):
+    instrument = load_instrument(path)
+    live = LiveSimulation(Simulation(instrument, engine='plain'), every=1, move_speed=0.5)
+    live.reset(0)
+    samples = live.advance(0.0)
+    carried = {name for wire in wires_for(samples.values) for name in wire.channels}
+    assert samples.values.keys() <= carried
