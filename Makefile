@@ -2,6 +2,8 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
+# where the recordings of a real grasper lie, if they do: make demo GRASPER=FILE.npz
+GRASPER ?= $(firstword $(wildcard ../shared/recordings/davinci_grasper/*.npz))
 PY := .venv/bin/python
 READY := .venv/.ready
 EXECUTABLES := tendon simulator estimator trajectory recorder
@@ -33,7 +35,7 @@ test: lint  ## lint, then the tests; ARGS='-k bags' goes to pytest
 	@echo '== pytest'; $(PY) -m pytest $(ARGS)
 
 demo: $(READY)  ## the paper's experiment, live, into out/demo
-	@.venv/bin/tendon demo --out out/demo
+	@.venv/bin/tendon demo --out out/demo $(if $(GRASPER),--grasper $(GRASPER))
 
 bench: $(READY)  ## the kernel's speed against C, scipy and others
 	@$(PY) -m bench $(ARGS)

@@ -32,6 +32,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='A,B,...',
         help='for static_balance: the channels to use, such as pulley/pulley_spindle/effort',
     )
+    parser.add_argument(
+        '--rate',
+        type=float,
+        metavar='HZ',
+        help='estimate no more often than this; default: always',
+    )
     parser.add_argument('--namespace', help='of the instrument, where a bag has several')
     parser.add_argument('--overwrite', action='store_true', help='replace what is there')
 
@@ -53,6 +59,8 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.estimate.score import scored
     from tendon_ros.model.instrument_file import load_instrument
 
+    if args.rate is not None and not args.rate > 0.0:
+        raise RecordingError(f'--rate {args.rate:g}: must be positive')
     instrument = load_instrument(args.instrument)
     channels = args.channels.split(',') if args.channels else None
     build(instrument, args.method, channels=channels)  # a mistake is told before any bag is read
@@ -66,7 +74,7 @@ def run(args: argparse.Namespace) -> None:
         recording = read_recording(bag, args.namespace)
         with shown(f'estimating {recording.name}') as progress:
             observer = build(instrument, args.method, channels=channels)
-            estimated = estimate_recording(recording, observer, progress)
+            estimated = estimate_recording(recording, observer, progress, args.rate)
         out.parent.mkdir(parents=True, exist_ok=True)
         if out.suffix == '.csv':
             export_csv(estimated, out)

@@ -7,6 +7,9 @@ import json
 
 HELP = 'show topics, counts, rates, gaps and jitter of a bag'
 
+#: metadata longer than this is cut in the table
+SHOWN = 200
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
@@ -61,7 +64,9 @@ def run(args: argparse.Namespace) -> None:
         console = Console(width=200, highlight=False)
     console.print(table)
     for key, value in sorted(info.metadata.items()):
-        print(f'{key}: {value}')
+        text = ' '.join(value.split())
+        short = f'{text[:SHOWN]} ... ({len(text)} characters; --json has all)'
+        print(f'{key}: {text if len(text) <= SHOWN else short}')
 
 
 def _number(value: float | None, form: str) -> str:

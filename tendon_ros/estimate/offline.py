@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement, Observer
 
 
-def measurements(recording: Recording, needs: tuple[str, ...]) -> Iterator[Measurement]:
+def measurements(
+    recording: Recording, needs: tuple[str, ...], rate: float | None = None
+) -> Iterator[Measurement]:
     """
     Yield the measurements of a recording in the order of their stamps.
 
     :param recording: with every channel that is needed.
     :param needs: the channels.
+    :param rate: leave out what comes sooner than this many a second allow [Hz]; None for all.
     :return: one measurement for each stamp at which all of them spoke.
     :raises RecordingError: where a channel is missing, or they never speak together.
     """
@@ -35,6 +39,8 @@ def measurements(recording: Recording, needs: tuple[str, ...]) -> Iterator[Measu
             f'{recording.name}: {", ".join(needs)} never carry the same stamp; resample them to '
             'one clock on import'
         )
+    if rate is not None:
+        common = _thinned(common, rate)
     columns = [
         recording[name].value[np.searchsorted(own, common)]
         for name, own in zip(needs, stamps, strict=True)
@@ -44,8 +50,21 @@ def measurements(recording: Recording, needs: tuple[str, ...]) -> Iterator[Measu
         yield Measurement(recording.epoch_ns + int(stamp), values)
 
 
+def _thinned(stamps: NDArray[np.int64], rate: float) -> NDArray[np.int64]:
+    """Return stamps at least a period apart, a tenth of it forgiven for jitter."""
+    period = 0.9e9 / rate
+    kept = [int(stamps[0])]
+    for stamp in stamps[1:]:
+        if stamp - kept[-1] >= period:
+            kept.append(int(stamp))
+    return np.array(kept, dtype=np.int64)
+
+
 def estimate_recording(
-    recording: Recording, observer: Observer, progress: Callable[[float], None] | None = None
+    recording: Recording,
+    observer: Observer,
+    progress: Callable[[float], None] | None = None,
+    rate: float | None = None,
 ) -> Recording:
     """
     Return a recording with the estimates added.
@@ -53,13 +72,14 @@ def estimate_recording(
     :param recording: what was measured.
     :param observer: a fresh observer.
     :param progress: called now and then with the part that is done, 0 to 1.
+    :param rate: as for :func:`measurements`.
     :return: the recording and the channels ``estimate/...``.
     :raises RecordingError: where a needed channel is missing.
     """
     times: list[float] = []
     columns: dict[str, list[float]] = {}
     span = max(recording.end - recording.start, 1e-9)
-    for n, measurement in enumerate(measurements(recording, observer.needs)):
+    for n, measurement in enumerate(measurements(recording, observer.needs, rate)):
         estimate = observer.update(measurement)
         times.append((estimate.stamp_ns - recording.epoch_ns) * 1e-9)
         for name, value in estimate.values.items():
