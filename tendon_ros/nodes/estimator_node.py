@@ -60,6 +60,7 @@ class EstimatorNode(TendonNode):
         self._estimated = 0
         self._busy = 0.0
         self._counted_at = time.monotonic()
+        self._warm_up()
         topics = sorted({place_of(channel)[0] for channel in self._observer.needs})
         for topic in topics:
             kind = JointState if topic in JOINT_TOPICS else WrenchStamped
@@ -116,6 +117,12 @@ class EstimatorNode(TendonNode):
             self._busy += time.monotonic() - begin
 
         return on_message
+
+    def _warm_up(self) -> None:
+        """Make the first estimate before it counts: it is slow, and shows what to publish."""
+        rest = Measurement(0, dict.fromkeys(self._observer.needs, 0.0))
+        self._broadcast.prepare(self._observer.update(rest).values)
+        self._observer.reset()
 
     def _take(self, measurement: Measurement) -> None:
         """Publish what a measurement says; the observer refuses stamps that step back."""

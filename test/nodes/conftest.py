@@ -70,6 +70,7 @@ class Started:
         finally:
             self.process.kill()
             self._thread.join()
+            self.process.stdout.close()
 
 
 @pytest.fixture(scope='session')
