@@ -26,8 +26,8 @@ def smoothed(
     :param right: the reference's angles, with sticking [rad].
     :param speeds: eps [rad/s].
     :param tolerance: of the steps.
-    :return: for each eps: error against sticking [rad], time [s], steps, and how far a pulley moves
-        while it ought to stick [rad].
+    :return: for each eps: error against sticking [rad], time [s], steps, and how far a pulley
+        moves while it ought to stick [rad].
     """
     setpoints = press_and_swing(len(right) * 1e-3)
     window = still_window(right)
@@ -53,7 +53,7 @@ def smoothed(
 
 
 def still_window(angle: FloatArray) -> tuple[int, int, int]:
-    """Return pulley, first and last tick of the longest time that a pulley does not move at all."""
+    """Return pulley, first and last tick of the longest time that a pulley does not move."""
     best = (0, 0, 0)
     for i in (2, 3, 4):
         moves = np.flatnonzero(np.diff(angle[:, i]) != 0.0)

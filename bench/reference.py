@@ -1,9 +1,9 @@
 """
-An independent reference: the same physics by dense linear algebra and DOP853, events by root-finding.
+An independent reference: the same physics by dense matrices and DOP853, events by root-finding.
 
 Shares nothing with the kernel but the cable's table: matrices instead of lists, an explicit method
-of order 8 at 1e-12 instead of RODAS4, Brent's root-finding on its dense output of order 7 instead of
-the kernel's events. Slow, and therefore trusted.
+of order 8 at 1e-12 instead of RODAS4, Brent's root-finding on its dense output of order 7 instead
+of the kernel's events. Slow, and therefore trusted.
 """
 
 from __future__ import annotations
@@ -194,21 +194,7 @@ class Reference:
                 if not len(fallen):
                     continue
                 dense = solver.dense_output()
-                roots = []
-                for e in fallen:
-                    a = solver.t_old + 1e-12 * (solver.t - solver.t_old)
-                    value = self._due(dense(a), low)[e]
-                    roots.append(
-                        a
-                        if value <= 0.0
-                        else brentq(
-                            lambda x, e=e, dense=dense: self._due(dense(x), low)[e],
-                            a,
-                            solver.t,
-                            xtol=1e-15,
-                            rtol=1e-15,
-                        )  # fmt: skip
-                    )
+                roots = [self._root(dense, e, solver.t_old, solver.t, low) for e in fallen]
                 which = int(fallen[int(np.argmin(roots))])
                 t = float(min(roots))
                 y = dense(t)
@@ -219,6 +205,22 @@ class Reference:
             if not found:
                 return np.asarray(solver.y)
         return y
+
+    def _root(
+        self,
+        dense: Callable[[float], FloatArray],
+        event: int,
+        start: float,
+        end: float,
+        low: FloatArray,
+    ) -> float:
+        """Return the time in a step at which an event happens."""
+        start += 1e-12 * (end - start)
+        if self._due(dense(start), low)[event] <= 0.0:
+            return start
+        return float(
+            brentq(lambda x: self._due(dense(x), low)[event], start, end, xtol=1e-15, rtol=1e-15)
+        )
 
     def _happen(self, which: int, y: FloatArray) -> None:
         n, K = self._n, len(self._closed)

@@ -1,4 +1,4 @@
-"""Interleaved rounds: what is compared runs in turn, so that the machine's noise hits all alike."""
+"""Interleaved rounds: what is compared runs in turn, so that noise hits all alike."""
 
 from __future__ import annotations
 

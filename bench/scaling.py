@@ -17,7 +17,7 @@ def chains(sizes: tuple[int, ...]) -> list[dict[str, float]]:
     Time one second of sampled control of chains.
 
     :param sizes: numbers of cable loops.
-    :return: for each: loops, time of one step for each loop [s], steps, seconds to compile or load.
+    :return: for each: loops, time of one step for each loop [s], steps, seconds to get ready.
     """
     found = []
     for loops in sizes:

@@ -397,7 +397,7 @@ static double due(const Work *w, int kind, int i, const double *y)
 static double locate(const Rig *r, const double *table, Work *w, double t, double h, int kind, int i,
                      double last)
 {
-    double low = 0.01, high = 1.0, part = 1.0;
+    double low = 1e-6, high = 1.0, part = 1.0;
     between(w, low, w->trial);
     evaluate(r, table, w, t + low * h, w->trial);
     double value = due(w, kind, i, w->trial);

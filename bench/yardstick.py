@@ -36,7 +36,7 @@ class _Rig(ctypes.Structure):
         *((name, ctypes.c_double * count) for name, count in _FIELDS),
         ('cells', ctypes.c_long),
         ('contact_law', ctypes.c_long),
-    ]  # noqa: RUF012
+    ]
 
 
 def compiler_found() -> bool:

@@ -1,11 +1,11 @@
 """
-A check on the default integration: classic Runge-Kutta at a fixed step, friction as a clipped budget.
+A check on the default integration: Runge-Kutta at a fixed step, friction as a clipped budget.
 
 It takes forces, sensors and controllers from the same kernel, and nothing of its integration: no
 error control, no located events, no linear algebra. At the start of each step a pulley at rest
-sticks if the other torques are within its budget; one that would reverse within the step is stopped
-at its end. What it gives converges with the step to what the default gives. It refuses a step that
-could not.
+sticks if the other torques are within its budget; one that would reverse within the step is
+stopped at its end. What it gives converges with the step to what the default gives. It refuses a
+step that could not.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]
 
-#: h * |lambda| above which an oscillation of the system is drawn too coarsely: RK4 then changes its
-#: amplitude by more than 1e-3 in a period
+#: h * |lambda| above which an oscillation of the system is drawn too coarsely: RK4 then changes
+#: its amplitude by more than 1e-3 in a period
 COARSE = 0.5
 
 
@@ -69,6 +69,8 @@ class FixedStep:
         """
         values = np.concatenate([np.linalg.eigvals(self._jacobian(*c)) for c in self._corners()])
         values = values[np.abs(values) > 1e-6]
+        if not len(values):
+            return float('inf')
         ringing = values[np.abs(values.imag) > np.abs(values.real)]
         fine = COARSE / np.abs(ringing).max() if len(ringing) else np.inf
         damped = values[values.real < 0.0]
@@ -116,10 +118,11 @@ class FixedStep:
         return Rows(self._instrument, at, np.array(rows).reshape(-1, at['WIDTH_ROW']))
 
     def _begin(self) -> None:
-        """Let the kernel see anew which pulleys stick, which way the others slide, what touches."""
+        """Let the kernel see anew which pulleys stick, slide which way, and what touches."""
         at, run = self._at, self._runner
         for i in range(at['N']):
             run._modes[at['MODE'] + i] = 2
+        run._work[at['EPOCH']] = run._carried[at['CLOCK']] + 0.5 * self._step
         self._kernel.begin(
             run._m, run._d, run._work, run._modes, self._signals, run._carried, run._state
         )
@@ -140,7 +143,7 @@ class FixedStep:
         return list(w[at['F'] : at['F'] + self._size])
 
     def _advance(self) -> None:
-        """Take one step of classic Runge-Kutta from the carried state; the sliding directions hold."""
+        """Take one classic Runge-Kutta step from the carried state; the directions hold."""
         run, h = self._runner, self._step
         y = list(run._state[: self._size])
         slopes = [self._slope(y)]
@@ -158,7 +161,7 @@ class FixedStep:
                 run._state[n + i] = 0.0
 
     def _corners(self) -> list[tuple[FloatArray, bool]]:
-        """Return where the system is stiffest: angles in the kernel's order, contacts closed or not."""
+        """Return where it is stiffest: angles in the kernel's order, contacts closed or not."""
         one, at = self._instrument, self._at
         order = list(at.order)
         routing = one.routing()
@@ -178,7 +181,7 @@ class FixedStep:
         return [(rest, False), (angles[order], False), (rest, True), (angles[order], True)]
 
     def _jacobian(self, angles: FloatArray, closed: bool) -> FloatArray:
-        """Return the derivative of the right-hand side, nothing sticking, by central differences."""
+        """Return the derivative of the right-hand side by differences, nothing sticking."""
         at, run = self._at, self._runner
         base = np.zeros(self._size)
         base[: at['N']] = angles

@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from tendon_ros.model.instrument import (
-    Controller, Curve, Instrument, Loop, Motor, Pulley, Sensor,
+    Controller,
+    Curve,
+    Instrument,
+    Loop,
+    Motor,
+    Pulley,
+    Sensor,
 )  # fmt: skip
 
 BENCH = Path(__file__).resolve().parents[2] / 'bench'

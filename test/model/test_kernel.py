@@ -103,7 +103,7 @@ class Stepper:
         kernel.begin(m, d, w, g, self.signals, c, list(self.start))
         kernel.prescribe(m, d, w, self.signals, t, at['START'])
         state = np.array(w[at['START'] : at['START'] + size])
-        state[2 * n :] = 0.3
+        state[2 * n :] = 0.02
         small = 1e-7
         jacobian = np.array(
             [(slope(t, state + small * e) - slope(t, state - small * e)) / (2.0 * small)

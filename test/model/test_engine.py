@@ -1,0 +1,77 @@
+"""The engine: one file for each structure, compiled or plain, never stale."""
+
+import ast
+import sys
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.errors import SimulationError
+from tendon_ros.model import engine
+from tendon_ros.model.layout import structure_of
+
+
+@pytest.fixture
+def structure(body):
+    return structure_of(body())
+
+
+def test_the_file_stands_alone(structure):
+    # every name that a function uses is its own, the file's, or Python's
+    tree = ast.parse(engine.joined_source(structure, compiled=False))
+    known = set(dir(__builtins__)) | set(__builtins__ if isinstance(__builtins__, dict) else ())
+    known |= {'math'}
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            known.add(node.name)
+        elif isinstance(node, ast.Assign):
+            known |= {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+    for function in (node for node in tree.body if isinstance(node, ast.FunctionDef)):
+        names = [n for n in ast.walk(function) if isinstance(n, ast.Name)]
+        own = {n.id for n in names if isinstance(n.ctx, ast.Store)}
+        own |= {a.arg for a in function.args.args}
+        used = {n.id for n in names if isinstance(n.ctx, ast.Load)}
+        assert used <= own | known, function.name
+
+
+def test_a_changed_law_is_another_file(structure, monkeypatch, tmp_path):
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
+    engine.engine_for.cache_clear()
+    first = engine.engine_for(structure, 'plain').module.__file__
+    monkeypatch.setattr(engine, '__version__', '99')
+    engine.engine_for.cache_clear()
+    second = engine.engine_for(structure, 'plain').module.__file__
+    engine.engine_for.cache_clear()
+    assert first != second
+    assert len(list((tmp_path / 'tendon_ros').glob('kernel_*.py'))) == 2
+
+
+def test_a_damaged_file_is_written_anew(structure, monkeypatch, tmp_path):
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
+    monkeypatch.setattr(engine, '__version__', '98')
+    engine.engine_for.cache_clear()
+    module = engine.engine_for(structure, 'plain').module
+    path = next((tmp_path / 'tendon_ros').glob('kernel_*.py'))
+    whole = path.read_text()
+    path.write_text('raise SystemExit')
+    monkeypatch.delitem(sys.modules, module.__name__)
+    engine.engine_for.cache_clear()
+    engine.engine_for(structure, 'plain')
+    engine.engine_for.cache_clear()
+    assert path.read_text() == whole
+
+
+def test_without_the_compiler(structure, monkeypatch):
+    monkeypatch.setattr(engine, 'compiler_installed', lambda: False)
+    engine.engine_for.cache_clear()
+    assert engine.engine_for(structure, 'auto').name == 'plain'
+    with pytest.raises(SimulationError, match='pip install numba'):
+        engine.engine_for(structure, 'compiled')
+    engine.engine_for.cache_clear()
+
+
+def test_plain_arrays_are_lists(structure):
+    plain = engine.engine_for(structure, 'plain')
+    given = np.arange(3.0)
+    assert plain.array(given) == [0.0, 1.0, 2.0]
+    assert all(type(n) is int for n in plain.array(np.arange(3)))
