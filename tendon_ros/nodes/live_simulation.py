@@ -61,15 +61,15 @@ class LiveSimulation:
             j: min(m.speed_limit, move_speed) for j, m in zip(self.joints, motors, strict=True)
         }
         self._last_ns = 0
-        self._start(0)
+        self._start(0, 0.0)
 
-    def _start(self, epoch_ns: int) -> None:
+    def _start(self, epoch_ns: int, now: float) -> None:
         self._epoch_ns = epoch_ns
         self._ticks = 0
         self._failed = False
         self._held = dict.fromkeys(self.joints, 0.0)
         self._motion: Motion | None = None
-        self._pace = Pace(self.instrument.control_period)
+        self._pace = Pace(self.instrument.control_period, now)
 
     @property
     def instrument(self) -> Instrument:
@@ -153,15 +153,16 @@ class LiveSimulation:
         """Stay at the present set-points; ends a planned motion."""
         self.servo({})
 
-    def reset(self, epoch_ns: int) -> None:
+    def reset(self, epoch_ns: int, now: float) -> None:
         """
         Put the mechanics at rest at zero, the clock at zero and the set-points at zero.
 
         :param epoch_ns: header stamp of time zero [ns]; later where stamps would step back.
+        :param now: the same moment on the steady clock [s].
         """
         with self._lock:
             self._simulation.reset()
-            self._start(max(epoch_ns, self._last_ns + 1_000_000))
+            self._start(max(epoch_ns, self._last_ns + 1_000_000), now)
 
     def use_effects(self, effects: Sequence[EffectUse]) -> None:
         """

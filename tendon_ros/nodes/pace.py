@@ -11,13 +11,14 @@ class Pace:
     up, simulated time then falls behind by that, and nothing else changes.
 
     :param period: of the controllers [s].
+    :param origin: when the first period begins, by a steady clock [s].
     :param most: how much time may be made up for at once [s].
     """
 
-    def __init__(self, period: float, most: float = 0.1) -> None:
+    def __init__(self, period: float, origin: float, most: float = 0.1) -> None:
         self._period = period
         self._most = most
-        self._origin: float | None = None
+        self._origin = origin
         self._done = 0
         #: simulated time given up since the start [s]
         self.slipped = 0.0
@@ -26,11 +27,9 @@ class Pace:
         """
         Return how many periods to run, and count them as run.
 
-        :param now: a steady clock [s].
-        :return: periods; the first call gives one, the period that begins now.
+        :param now: the same clock [s].
+        :return: periods; one at the origin, the period that begins there.
         """
-        if self._origin is None:
-            self._origin = now
         # A clock read a rounding error early must not cost a whole period.
         ticks = int((now - self._origin) / self._period + 1e-6) + 1 - self._done
         most = max(int(self._most / self._period), 1)
@@ -50,8 +49,6 @@ class Pace:
         :param every: periods.
         :return: [s], not below zero.
         """
-        if self._origin is None:
-            return 0.0
         # Period n is run when n + 1 are counted, so the next one to publish is at or after `done`.
         following = -(-self._done // every) * every
         return max(self._origin + following * self._period - now, 0.0)

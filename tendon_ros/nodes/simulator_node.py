@@ -70,7 +70,7 @@ class SimulatorNode(TendonNode):
         samples = self._live.advance(time.monotonic())
         if samples is not None:
             self._broadcast.prepare(samples.values)
-        self._live.reset(time.time_ns())
+        self._live.reset(time.time_ns(), time.monotonic())
         self._thread.start()
 
     def close(self) -> None:
@@ -204,7 +204,7 @@ class SimulatorNode(TendonNode):
         return SetParametersResult(successful=True)
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._live.reset(time.time_ns())
+        self._live.reset(time.time_ns(), time.monotonic())
         self._diverged = ''
         self._slipped = 0.0
         self._state.reset()

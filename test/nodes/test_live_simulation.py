@@ -20,7 +20,7 @@ def rig():
 
 def live_of(instrument, every=2, move_speed=0.5):
     live = LiveSimulation(Simulation(instrument), every=every, move_speed=move_speed)
-    live.reset(10**18)
+    live.reset(10**18, 0.0)
     return live
 
 
@@ -109,7 +109,7 @@ def test_a_reset_goes_to_zero_and_stamps_never_step_back(rig):
     live = live_of(rig)
     live.servo({'pulley_M': 0.05})
     before, _ = collect(live, np.arange(0.0, 0.3, 0.01))
-    live.reset(0)
+    live.reset(0, 5.0)
     after, values = collect(live, np.arange(5.0, 5.1, 0.01))
     assert after[0] > before[-1]
     assert np.all(values['setpoint/pulley_M/position'] == 0.0)
@@ -154,11 +154,11 @@ class Diverging:
 
 def test_a_divergence_is_said_once_and_a_reset_mends_it(rig):
     live = LiveSimulation(Diverging(Simulation(rig)), every=2, move_speed=0.5)
-    live.reset(0)
+    live.reset(0, 0.0)
     collect(live, [0.0, 0.002])
     with pytest.raises(SimulationError):
         live.advance(0.004)
     assert live.advance(0.006) is None
     assert live.wait(0.0061) > 0.0
-    live.reset(0)
+    live.reset(0, 0.007)
     assert live.advance(0.008) is not None

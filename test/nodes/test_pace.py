@@ -11,7 +11,7 @@ PERIOD = 1e-3
 
 @given(st.lists(st.floats(0.0, 0.09), min_size=1, max_size=200))
 def test_no_period_is_lost_or_added_while_the_loop_keeps_up(gaps):
-    pace = Pace(PERIOD)
+    pace = Pace(PERIOD, 100.0)
     now, done = 100.0, pace.due(100.0)
     for gap in gaps:
         now += gap
@@ -21,7 +21,7 @@ def test_no_period_is_lost_or_added_while_the_loop_keeps_up(gaps):
 
 
 def test_a_long_stall_is_given_up_and_said():
-    pace = Pace(PERIOD, most=0.1)
+    pace = Pace(PERIOD, 0.0, most=0.1)
     pace.due(0.0)
     assert pace.due(1.0) == 100
     assert pace.slipped == pytest.approx(0.9)
@@ -31,7 +31,7 @@ def test_a_long_stall_is_given_up_and_said():
 
 
 def test_the_wait_ends_when_the_next_sample_is_due():
-    pace = Pace(PERIOD)
+    pace = Pace(PERIOD, 5.0)
     assert pace.wait(5.0, 2) == 0.0
     assert pace.due(5.0) == 1
     assert pace.wait(5.0003, 2) == pytest.approx(0.0017)

@@ -66,7 +66,7 @@ def test_joints_with_other_fields_travel_apart():
 def test_every_instrument_has_topics_for_what_it_measures(path):
     instrument = load_instrument(path)
     live = LiveSimulation(Simulation(instrument, engine='plain'), every=1, move_speed=0.5)
-    live.reset(0)
+    live.reset(0, 0.0)
     samples = live.advance(0.0)
     carried = {name for wire in wires_for(samples.values) for name in wire.channels}
     assert samples.values.keys() <= carried
