@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 HELP = 'run the rig live over ROS 2, analyse the bag, reproduce the paper, and make a page'
 
 INSTRUMENT = 'paper_rig'
-METHOD = 'static_balance'
+METHOD = 'dynamic'
 #: the trajectory and its smooth approach [s]
 SPAN = 19.0
 #: estimates a second on the real tool, whose motion is below 1 Hz
@@ -102,9 +102,10 @@ def _live(folder: Path) -> LiveRig:
         bag = record_rig(folder, INSTRUMENT, METHOD, progress, SPAN)
     recording = read_recording(bag)
     with shown('analysing') as progress:
-        observer = build(load_instrument(INSTRUMENT), METHOD)
+        instrument = load_instrument(INSTRUMENT)
+        observer = build(instrument, METHOD)
         again = estimate_recording(recording, observer, progress)['estimate/force']
-    score = scored(recording)
+    score = scored(recording, instrument)
     if score is None:
         raise RecordingError(f'{bag}: no live estimates; see the logs beside it')
     live = recording['estimate/force']
@@ -133,9 +134,9 @@ def _real(path: Path) -> RealTool:
     looked_at = None
     with shown('estimating') as progress:
         for n, recording in enumerate(import_runs(path, mapping)):
-            observer = build(grasper, METHOD, channels=TOOL_CHANNELS)
+            observer = build(grasper, 'static_balance', channels=TOOL_CHANNELS)
             estimated = estimate_recording(recording, observer, rate=TOOL_RATE)
-            score = scored(estimated)
+            score = scored(estimated, grasper)
             if score is None:
                 raise RecordingError(f'{path}: run {recording.name} has no jaw torque')
             scores[recording.name] = score

@@ -80,7 +80,7 @@ def run(args: argparse.Namespace) -> None:
             export_csv(estimated, out)
         else:
             write_recording(estimated, out, overwrite=args.overwrite)
-        score = scored(estimated)
+        score = scored(estimated, instrument)
         if score is None:
             print(f'{out}: no load cell in the bag to compare with')
             continue

@@ -30,9 +30,6 @@ def run(args: argparse.Namespace) -> None:
     :param args: parsed arguments.
     :raises ReportError: where a file cannot be written.
     """
-    from rich.console import Console
-    from rich.table import Table
-
     from tendon_ros.cli.progress import shown
     from tendon_ros.report.paper_page import HEADER, reproduce, statement_table
 
@@ -43,12 +40,15 @@ def run(args: argparse.Namespace) -> None:
             print(title, flush=True)
 
         statements = reproduce(args.out, progress)
-    found = statement_table(statements)
-    table = Table(box=None, pad_edge=False)
-    for title in HEADER:
-        table.add_column(title, overflow='fold')
-    for row in found.rows:
-        table.add_row(*row)
-    Console(markup=False, highlight=False).print(table)
+    rows = statement_table(statements).rows
+    # remarks are long; here only those that say why something does not hold, the rest is in files
+    short = [HEADER[:-1], *(row[:-1] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*short, strict=True)]
+    print()
+    for line, statement in zip(short, (None, *statements), strict=True):
+        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        print('  '.join(cells).rstrip())
+        if statement is not None and not statement.holds:
+            print(f'{"":{widths[0]}}  {statement.note}')
     failed = sum(not s.holds for s in statements)
-    print(f'{len(statements) - failed} statements hold, {failed} do not; {args.out}/index.html')
+    print(f'\n{len(statements) - failed} statements hold, {failed} do not: {args.out}/index.html')

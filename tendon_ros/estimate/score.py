@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendon_ros.base.recording import Recording
+from tendon_ros.estimate.channels import deviation
+from tendon_ros.model.instrument import Instrument
 
 
 @dataclass(frozen=True)
@@ -15,7 +17,8 @@ class Score:
     Estimate against measurement of one recording.
 
     ``rmse``, ``bias`` and ``span`` (of the measurement) in ``unit``; ``coverage``: part of the
-    samples within two stated standard deviations; ``samples``: their number.
+    samples within two standard deviations, the load cell's own noise included;
+    ``samples``: their number.
     """
 
     quantity: str
@@ -27,11 +30,12 @@ class Score:
     samples: int
 
 
-def scored(recording: Recording) -> Score | None:
+def scored(recording: Recording, instrument: Instrument) -> Score | None:
     """
     Compare the estimate in a recording with its load cell.
 
     :param recording: with estimates.
+    :param instrument: states the noise of its load cell.
     :return: the score, or None where the load cell was not recorded.
     """
     for quantity in ('force', 'torque'):
@@ -40,7 +44,8 @@ def scored(recording: Recording) -> Score | None:
             estimate = recording[guess]
             measured = recording[truth].at(estimate.time)
             error = estimate.value - measured
-            sigma = recording[f'{guess}_std'].value
+            noise = [deviation(s) for s in instrument.sensors if s.channel == truth and s.noise]
+            sigma = np.hypot(recording[f'{guess}_std'].value, noise[0] if noise else 0.0)
             return Score(
                 quantity,
                 estimate.unit,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tendon_ros.base.errors import InstrumentError, RecordingError
 from tendon_ros.bags.reader import read_recording
-from tendon_ros.estimate import METHODS, Measurement, build, estimate_recording
+from tendon_ros.base.errors import InstrumentError, RecordingError
+from tendon_ros.estimate import build, estimate_recording, Measurement, METHODS
 from tendon_ros.estimate.offline import measurements
 from tendon_ros.estimate.score import scored
 from tendon_ros.model.instrument_file import load_instrument
@@ -30,7 +30,7 @@ def test_force_and_inner_angles_of_a_simulated_press(method, bench, pressing, rm
 
 
 def test_no_force_is_found_where_nothing_is_touched(bench, free_recording, rms):
-    """A free motion is not taken for a force; the static method owes what inertia does, no more."""
+    """A free motion is not taken for a force; the static method owes what inertia does."""
     found = {
         method: rms(
             estimate_recording(free_recording, build(bench, method))['estimate/force'].value
@@ -45,7 +45,7 @@ def test_no_force_is_found_where_nothing_is_touched(bench, free_recording, rms):
 def test_stated_uncertainty_covers_the_error(method, bench, noisy):
     """With noise, two standard deviations hold at least 90 % of the samples, and are no excuse."""
     recording = estimate_recording(noisy, build(bench, method))
-    score = scored(recording)
+    score = scored(recording, bench)
     assert score is not None
     assert score.coverage > 0.9
     assert np.median(recording['estimate/force_std'].value) < 5.0 * score.rmse
@@ -120,9 +120,9 @@ def test_shaft_torque_gives_the_jaw_torque(rms):
     profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
     recording = simulate(grasper, profile, rate=500.0)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
-    estimated = estimate_recording(
-        recording, build(grasper, 'static_balance', channels=channels)
-    )['estimate/torque']
+    estimated = estimate_recording(recording, build(grasper, 'static_balance', channels=channels))[
+        'estimate/torque'
+    ]
     truth = recording['load_cell/torque']
     assert truth.value.max() > 0.02
     assert rms(estimated.value - truth.at(estimated.time)) < 0.05 * truth.value.max()

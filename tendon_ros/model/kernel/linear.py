@@ -210,8 +210,8 @@ def solve(m: Floats, d: Ints, w: Floats, g: Ints, h: float, to: int) -> None:
         if k >= 0:
             for e in range(WIDTH):
                 i = LOOP_PULLEY[WIDTH * k + e]
-                r = w[J_RADIUS + WIDTH * k + e]
-                value += r * (w[J_A + z] * w[to + i] + w[J_B + z] * w[to + N + i])
+                radius = w[J_RADIUS + WIDTH * k + e]
+                value += radius * (w[J_A + z] * w[to + i] + w[J_B + z] * w[to + N + i])
         else:
             i = d[STATE_PULLEY + z]
             value += w[J_A + z] * w[to + i] + w[J_B + z] * w[to + N + i]
