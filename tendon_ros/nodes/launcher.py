@@ -1,9 +1,9 @@
 """
 Start nodes: read the command line, bring ROS up, spin until told to stop, and leave cleanly.
 
-SIGINT and SIGTERM only set a flag here, so that nothing is torn in the middle of a step or a
-write; every node then closes what it has open, and the exit status is 0. The main thread does
-nothing but wait for that flag, because Python runs signal handlers in no other thread.
+Once nodes are ready, SIGINT and SIGTERM only set a flag, so that nothing is torn in the middle of a
+step or a write; every node then closes what it has open, and the exit status is 0. The main thread
+does nothing but wait for that flag, because Python runs signal handlers in no other thread.
 """
 
 from __future__ import annotations
@@ -90,9 +90,15 @@ def run(programs: Sequence[tuple[Program, Mapping[str, Value]]], ros: Sequence[s
             f'ROS 2 is not there ({error}); source its setup.bash, or pip install '
             "'ros-jazzy-rclpy[fastrtps]' ros-jazzy-common-interfaces with Python 3.12"
         ) from None
-    stop = threading.Event()
+    stop, ready = threading.Event(), threading.Event()
+
+    def on_signal(*_: object) -> None:
+        stop.set()
+        if not ready.is_set():
+            raise SystemExit(DONE)  # a kernel that is being compiled would take long to end
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
+        signal.signal(number, on_signal)
     try:
         rclpy.init(args=list(ros), signal_handler_options=SignalHandlerOptions.NO)
     except Exception as error:  # rclpy has no common base for what arguments can do to it
@@ -105,10 +111,10 @@ def run(programs: Sequence[tuple[Program, Mapping[str, Value]]], ros: Sequence[s
             module, name = program.made_by.split(':')
             maker = getattr(import_module(f'tendon_ros.nodes.{module}'), name)
             nodes.append(maker(given))
-            if stop.is_set():
-                return DONE
+        ready.set()
         return _spin(nodes, stop, events=all(program.events for program, _ in programs))
     finally:
+        ready.set()
         for node in nodes:
             node.close()
         for node in nodes:

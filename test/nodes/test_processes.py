@@ -268,9 +268,13 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
 @pytest.mark.parametrize(
     ('node', 'arguments', 'said'),
     [
-        ('simulator', ['--instrument', 'nothing'], 'nothing: no such file'),
-        ('simulator', ['--ros-args', '-p', 'rte:=500.0'], "no parameter 'rte'; did you mean rate"),
-        ('simulator', ['--ros-args', '-p', 'rate:=500'], 'write 500.0'),
+        ('trajectory', ['--instrument', 'nothing'], 'nothing: no such file'),
+        (
+            'trajectory',
+            ['--ros-args', '-p', 'rte:=500.0'],
+            "no parameter 'rte'; did you mean rate",
+        ),
+        ('trajectory', ['--ros-args', '-p', 'rate:=500'], 'write 500.0'),
         (
             'simulator',
             ['--ros-args', '-p', 'effects.cable_L3.pretention.scale:=0.9'],
@@ -294,6 +298,18 @@ def test_a_mistake_is_one_line_and_status_2(start, node, arguments, said, tmp_pa
     lines = [line for line in one.lines if not line.startswith('[INFO]')]
     assert said in lines[-1]
     assert len(lines) == 1, one.said
+
+
+def test_a_signal_ends_a_first_start_that_still_compiles(start, tmp_path, monkeypatch):
+    monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
+    one = start('simulator')
+    one.wait_for('preparing')
+    time.sleep(1.0)
+    begin = time.monotonic()
+    assert one.stop(signal.SIGINT) == 0, one.said
+    assert time.monotonic() - begin < 8.0
+    assert 'Traceback' not in one.said
+    assert 'ready after' not in one.said
 
 
 def test_an_unknown_key_of_a_parameter_file_is_an_error(start, tmp_path):
