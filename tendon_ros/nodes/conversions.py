@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 import math
+from typing import Any
 
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import WrenchStamped
+from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 from tendon_ros.bags.joint_states import resolve_names
@@ -23,17 +24,17 @@ class MessageError(TendonError):
     """A message that cannot be used; what held before it goes on to hold."""
 
 
-def to_stamp(nanoseconds: int) -> Time:
+def to_stamp(nanoseconds: int) -> Any:
     """
     Return a stamp for a message's header.
 
     :param nanoseconds: since 1970 [ns].
     :return: the same as a message.
     """
-    return Time(sec=int(nanoseconds // 10**9), nanosec=int(nanoseconds % 10**9))
+    return Time(nanoseconds=int(nanoseconds)).to_msg()
 
 
-def from_stamp(stamp: Time) -> int:
+def from_stamp(stamp: Any) -> int:
     """
     Return a header's stamp in nanoseconds.
 

@@ -1,9 +1,9 @@
 """
 Start nodes: read the command line, bring ROS up, spin until told to stop, and leave cleanly.
 
-Once nodes are ready, SIGINT and SIGTERM only set a flag, so that nothing is torn in the middle of a
-step or a write; every node then closes what it has open, and the exit status is 0. The main thread
-does nothing but wait for that flag, because Python runs signal handlers in no other thread.
+SIGINT and SIGTERM only set a flag here, so that nothing is torn in the middle of a step or a
+write; every node then closes what it has open, and the exit status is 0. The main thread does
+nothing but wait for that flag, because Python runs signal handlers in no other thread.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+import os
 import signal
 import sys
 import threading
@@ -23,6 +24,9 @@ from tendon_ros.nodes.settings import add_options, given_options, Setting, Value
 
 #: exit status: done; anything that is neither; the user's arguments or input are at fault
 DONE, FAILED, MISTAKE = 0, 1, 2
+
+#: how long nodes that are told to stop may go on to get ready [s]
+GRACE = 1.0
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,10 @@ def run(programs: Sequence[tuple[Program, Mapping[str, Value]]], ros: Sequence[s
     def on_signal(*_: object) -> None:
         stop.set()
         if not ready.is_set():
-            raise SystemExit(DONE)  # a kernel that is being compiled would take long to end
+            # A kernel that is being compiled cannot be interrupted, and there is nothing to close.
+            timer = threading.Timer(GRACE, lambda: ready.is_set() or os._exit(DONE))
+            timer.daemon = True
+            timer.start()
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, on_signal)
