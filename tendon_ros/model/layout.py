@@ -106,11 +106,11 @@ class _Packer:
                 f'{self.instrument.sensors[index].kind}: it acts on {listed(effect.sensors)}'
             )
         values = {**effect.neutral, **use.parameters}
-        unknown = set(use.parameters) - set(values)
+        unknown = set(use.parameters) - set(effect.neutral)
         if unknown:
             raise EffectError(
                 f'{use.effect} at {use.place}: no parameter {sorted(unknown)[0]!r}; it has '
-                f'{listed(values)}'
+                f'{listed(effect.neutral)}'
             )
         for parameter in effect.parameters:
             value = values[parameter.name]
