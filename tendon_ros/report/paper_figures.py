@@ -52,11 +52,11 @@ def cable_test_figure(test: CableTest) -> Figure:
     one.set(title='One cable', xlabel='elongation (mm)', ylabel='tension (N)', xlim=(0, None))
     one.set_ylim(0, 1.08 * TABLE_END)
     loop.plot(1e3 * test.loop_elongation, test.loop_force, color=BLUE)
-    sides = (('1.83 N', (0, 9), 'left'), ('18 N', (-8, 3), 'right'), ('50 N', (-8, 3), 'right'))
+    sides = (('1.83 N', (-2, 8), 'center'), ('18 N', (-8, 3), 'right'), ('50 N', (-8, 3), 'right'))
     for (x, y), (text, offset, side) in zip(test.stated, sides, strict=True):
         loop.plot(1e3 * x, y, 'o', color=RED)
         loop.annotate(
-            f'{text} at the tip',
+            text,
             (1e3 * x, y),
             xytext=offset,
             textcoords='offset points',
@@ -73,7 +73,11 @@ def cable_test_figure(test: CableTest) -> Figure:
         fontsize=9.5,
         color='#5a616b',
     )
-    loop.set(title='A loop of two', xlabel='elongation of the loop (mm)', ylabel='net force (N)')
+    loop.set(
+        title='A loop of two, and forces at the tip',
+        xlabel='elongation of the loop (mm)',
+        ylabel='net force (N)',
+    )
     loop.set(xlim=(0, None), ylim=(0, None))
     return figure
 
