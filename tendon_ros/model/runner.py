@@ -182,6 +182,8 @@ class Runner:
         last = self.tick + ticks - (0 if smoothly else 1)
         count = last // every - (self.tick - 1) // every
         rows = self.engine.array(np.zeros(count * at['WIDTH_ROW']))
+        self._carried[at['ROOM']] = float(count)
+        self._carried[at['NOISY']] = 0.0 if noise is None else 1.0
         status = self.engine.module.rollout(
             self._m,
             self._d,

@@ -66,7 +66,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     },
     'c': {
         'CLOCK': '1', 'STEP': '1', 'TICK': '1', 'COMMAND': 'U', 'SUM': 'U', 'LAST': 'U',
-        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'PAST': 'Q*RING',
+        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'PAST': 'Q*RING',
     },
     'g': {'MODE': 'N', 'TOUCH': 'K', 'COUNT': '3'},
 }  # fmt: skip

@@ -69,7 +69,7 @@ def locate(
     kind: int, index: int, last: float,
 ) -> float:  # fmt: skip
     """Return the part of the step just taken at which an event happens: Illinois."""
-    low = 0.01
+    low = 1e-6
     between(d, w, low, TRIAL)
     prescribe(m, d, w, s, t + low * h, TRIAL)
     evaluate(m, d, w, g, s, c, t + low * h, TRIAL)

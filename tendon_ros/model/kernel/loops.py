@@ -27,7 +27,7 @@ def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
     u = (t - s[0]) * s[1]
     at = 4 + row * samples
     to = at + rows * samples
-    if u <= 0.0:
+    if u < 0.0:
         return s[at], 0.0, 0.0
     if u >= samples - 1:
         return s[at + samples - 1], 0.0, 0.0

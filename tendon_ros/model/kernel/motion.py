@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
 from tendon_ros.model.kernel.linear import linearise, outer
@@ -9,8 +11,8 @@ from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, EPOCH, F, FIRST, Floats, Ints, M, N, NEXT, PERIOD, Q,
-    ROW, SENSOR_SOURCE, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
+    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, EPOCH, F, FIRST, Floats, Ints, M, N, NEXT, PERIOD,
+    ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
 
 MOST_STEPS = 200_000  # between two ticks
@@ -52,11 +54,11 @@ def advance(
             error = step(m, d, w, g, s, c, t, h)
             while not error <= 1.0:
                 g[COUNT + 1] += 1
-                h *= clipped(0.9 * error**-0.25, 0.1, 0.7) if error < 1e300 else 0.1
+                h *= clipped(0.9 / math.sqrt(math.sqrt(error)), 0.1, 0.7) if error < 1e300 else 0.1
                 if h < SMALLEST or steps > MOST_STEPS:
                     return DIVERGED
                 error = step(m, d, w, g, s, c, t, h)
-            grown = h * clipped(0.9 * (error + 1e-10) ** -0.25, 0.2, 5.0)
+            grown = h * clipped(0.9 / math.sqrt(math.sqrt(error + 1e-10)), 0.2, 5.0)
             c[STEP] = max(grown, c[STEP]) if h == whole else grown
             g[COUNT] += 1
             evaluate(m, d, w, g, s, c, t + h, NEXT)
@@ -104,20 +106,17 @@ def rollout(
     begin(m, d, w, g, s, c, y)
     status = DONE
     if smoothly == 1:
-        sense(m, d, w, c, noise, START)
+        sense(m, d, w, c, noise, START, 0)
+        sense(m, d, w, c, noise, START, 1)
         record(m, d, w, c, c[CLOCK], rows, every, START)
         last = c[TICK] + ticks
         status = advance(m, d, w, g, s, c, last * m[PERIOD], noise, rows, every, 1)
         c[TICK] = last
     else:
         for n in range(ticks):
-            sense(m, d, w, c, noise, START)
-            control(m, d, w, c, setpoint, U * n)
-            state_at(m, d, w, g, s, c, c[CLOCK], START)
-            for q in range(Q):
-                if SENSOR_SOURCE[q] == 2:  # a torque is reported when it is commanded
-                    sense(m, d, w, c, noise, START)
-                    break
+            sense(m, d, w, c, noise, START, 0)
+            control(m, d, w, g, s, c, setpoint, U * n)
+            sense(m, d, w, c, noise, START, 1)
             record(m, d, w, c, c[CLOCK], rows, every, START)
             status = advance(
                 m, d, w, g, s, c, (c[TICK] + 1.0) * m[PERIOD], noise, rows, every, 0
@@ -138,6 +137,7 @@ def glide(
     begin(m, d, w, g, s, c, y)
     status = advance(m, d, w, g, s, c, end, row, row, 1, 0)
     c[ROW] = 0.0
+    c[ROOM] = 1.0
     record(m, d, w, c, end, row, 1, START)
     linearise(m, d, w)
     for n in range(2 * N + d[ACTIVE]):

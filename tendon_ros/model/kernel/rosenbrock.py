@@ -7,6 +7,8 @@ matrix, no Newton iteration.
 
 from __future__ import annotations
 
+import math
+
 from tendon_ros.model.kernel.forces import evaluate, prescribe
 from tendon_ros.model.kernel.linear import factor, solve, still
 from tendon_ros.model.kernel.structure import (
@@ -127,7 +129,7 @@ def step(
     for n in range(2 * N, size):
         total += (w[u6 + n] / STATE_TOLERANCE) ** 2
     prescribe(m, d, w, s, t + h, NEXT)
-    return float((total / size) ** 0.5)
+    return math.sqrt(total / size)
 
 
 def between(d: Ints, w: Floats, part: float, to: int) -> None:

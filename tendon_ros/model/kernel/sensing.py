@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from tendon_ros.model.kernel.events import state_at
 from tendon_ros.model.kernel.forces import evaluate, prescribe
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ARM, BUDGET, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, FORCE, Floats,
-    INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MOTOR_BIAS, MOTOR_GAIN,
-    MOTOR_LIMIT, MOTOR_PULLEY, N, PAST, PERIOD, Q, READING, REFERENCE, REMEMBERS, RING, ROW,
-    SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX, SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED,
-    SENSOR_RESOLUTION, SENSOR_SOURCE, SIDE, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
-    WIDTH_ROW,
+    ACCELERATION, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
+    Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
+    MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, Q, READING,
+    REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
+    SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SIDE,
+    START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH, WIDTH_ROW,
 )  # fmt: skip
 
 SMALLEST = 1e-10  # times nearer than this are one [s]
@@ -25,12 +26,21 @@ def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
     return (need - m[MOTOR_BIAS + j]) / m[MOTOR_GAIN + j]
 
 
-def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int) -> None:
-    """Let every sensor read the state ``w[at:]``, whose forces have been evaluated."""
+def sense(
+    m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torques: int
+) -> None:
+    """
+    Let sensors read the state ``w[at:]``, whose forces have been evaluated.
+
+    Those of the motors' torques (``torques`` 1) read after the controllers have acted, all others
+    (``torques`` 0) before.
+    """
     tick = int(c[TICK])
     slot = tick % RING
     for q in range(Q):
         source = SENSOR_SOURCE[q]
+        if (source == 2) != (torques == 1):
+            continue
         index = SENSOR_INDEX[q]
         truth = 0.0
         if source == 0:
@@ -57,7 +67,7 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int) -> N
         value = m[SENSOR_GAIN + q] * value + m[SENSOR_OFFSET + q]
         if d[SENSOR_RECTIFIED + q] == 1:
             value = abs(value)
-        if len(noise) > 0:
+        if c[NOISY] > 0.0:
             value += m[SENSOR_NOISE + q] * noise[Q * int(c[TICK] - c[DRAWN]) + q]
         if m[SENSOR_RESOLUTION + q] > 0.0:
             counts = value / m[SENSOR_RESOLUTION + q] + 0.5
@@ -76,7 +86,7 @@ def record(
     if tick % every != 0:
         return
     o = WIDTH_ROW * int(c[ROW])
-    if o + WIDTH_ROW > len(rows):
+    if c[ROW] >= c[ROOM]:
         return
     c[ROW] += 1.0
     rows[o] = t
@@ -115,16 +125,25 @@ def report(
         prescribe(m, d, w, s, due_at, TRIAL)
         evaluate(m, d, w, g, s, c, due_at, TRIAL)
         c[TICK] += ahead
-        sense(m, d, w, c, noise, TRIAL)
+        sense(m, d, w, c, noise, TRIAL, 0)
+        sense(m, d, w, c, noise, TRIAL, 1)
         record(m, d, w, c, due_at, rows, every, TRIAL)
         ahead = ticks_ahead(d, c, every)
         due_at = (c[TICK] + ahead) * m[PERIOD]
 
 
-def control(m: Floats, d: Ints, w: Floats, c: Floats, setpoint: Floats, o: int) -> None:
-    """Let every sampled controller (PID, limited) hold a new torque until the next tick."""
+def control(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, setpoint: Floats, o: int
+) -> None:
+    """
+    Let every sampled controller (PID, limited) hold a new torque until the next tick.
+
+    Forces at ``w[START:]`` have been evaluated, and hold with the new torques afterwards.
+    """
+    afresh = 0
     for j in range(U):
-        if d[REFERENCE + j] >= 0 or d[DRIVE + MOTOR_PULLEY[j]] == 1:
+        i = MOTOR_PULLEY[j]
+        if d[REFERENCE + j] >= 0 or d[DRIVE + i] == 1:
             continue
         error = setpoint[o + j] - c[READING + d[ENCODER + j]]
         if c[LAST + j] > 1e300:  # the first tick has no past
@@ -138,4 +157,12 @@ def control(m: Floats, d: Ints, w: Floats, c: Floats, setpoint: Floats, o: int) 
             c[SUM + j] = total
         c[COMMAND + j] = torque
         applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
-        w[INPUT + MOTOR_PULLEY[j]] = clipped(applied, -m[MOTOR_LIMIT + j], m[MOTOR_LIMIT + j])
+        applied = clipped(applied, -m[MOTOR_LIMIT + j], m[MOTOR_LIMIT + j])
+        w[TORQUE + i] += applied - w[INPUT + i]
+        w[INPUT + i] = applied
+        if g[MODE + i] == 0:
+            afresh = 1
+        else:
+            w[F + N + i] = (w[TORQUE + i] + w[SIDE + i] * w[BUDGET + i]) / m[INERTIA + i]
+    if afresh == 1:  # a stuck pulley may let go
+        state_at(m, d, w, g, s, c, c[CLOCK], START)

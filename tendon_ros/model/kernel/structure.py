@@ -186,6 +186,8 @@ LAST: int  # U
 READING: int  # Q
 DRAWN: int  # tick of the first row of noise
 ROW: int  # rows written in this call
+ROOM: int  # rows that there is room for
+NOISY: int  # 1 where the sensors' noise is on
 PAST: int  # Q * RING
 MODE: int  # N: -1, 1 sliding, 0 stuck, 2 without dry friction or with pre-sliding
 TOUCH: int  # K
