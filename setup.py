@@ -18,7 +18,6 @@ VERSION = re.search(r"__version__ = '(.+)'", (ROOT / NAME / '__init__.py').read_
 #: lower bounds that ``make lowest`` runs the tests with
 REQUIRES = [
     'jinja2>=3.1.2',
-    'joblib>=1.3.2',
     'matplotlib>=3.8.0',
     'mcap>=1.1.1',
     'numpy>=1.26.0',

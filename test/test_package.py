@@ -22,7 +22,12 @@ SCRIPTS = {
     if entry.group == 'console_scripts'
 }
 #: imported name of what pip calls otherwise
-PIP_NAMES = {'yaml': 'pyyaml', 'mcap_ros2': 'mcap-ros2-support'}
+#: import names that are not the names in the index; pydantic brings its core
+PIP_NAMES = {
+    'yaml': 'pyyaml',
+    'mcap_ros2': 'mcap-ros2-support',
+    'pydantic_core': 'pydantic',
+}
 #: ROS packages that no rosdep key provides: imported where they are, done without where not
 OPTIONAL_ROS = {'crtk_msgs'}
 

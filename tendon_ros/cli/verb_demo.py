@@ -1,4 +1,4 @@
-"""``tendon demo``: the paper's experiment live, its figures, and a real tool where one is given."""
+"""``tendon demo``: the paper's experiment live, its figures, and a real tool if one is given."""
 
 from __future__ import annotations
 

@@ -109,11 +109,13 @@ class Simulation:
         ]
         return Rows(self._instrument, self._runner.structure, np.concatenate(tables))
 
-    def follow(self, setpoints: FloatArray, every: int = 1) -> Rows:
+    def follow(self, setpoints: FloatArray | Signals, every: int = 1) -> Rows:
         """
         Advance continuous controllers along a reference known beforehand, without stops at ticks.
 
-        :param setpoints: as in :meth:`run`; the reference is monotone cubic between them.
+        :param setpoints: as in :meth:`run`; the reference is monotone cubic between them. Or that
+            reference itself, which many rollouts can share: a signal for each motor, sampled
+            at the controllers' period from the present time on.
         :param every: record every so many ticks.
         :return: what was recorded, from the first set-point to the last.
         :raises SimulationError: where the instrument's controllers are sampled, or on divergence.
@@ -123,15 +125,19 @@ class Simulation:
                 f'{self._instrument.name}: its controllers are sampled; use run(), or write '
                 "'rate: continuous' into its control section"
             )
-        wished = self._checked(setpoints)
-        signals = Signals.through(self.time, self._instrument.control_period, wished.T)
+        if isinstance(setpoints, Signals):
+            signals = setpoints
+        else:
+            wished = self._checked(setpoints)
+            signals = Signals.through(self.time, self._instrument.control_period, wished.T)
+        samples = signals.value.shape[1]
         return self._runner.advance(
-            wished,
-            len(wished) - 1,
+            np.zeros(0),
+            samples - 1,
             every=every,
             smoothly=True,
             signals=signals,
-            noise=self._draw(len(wished)),
+            noise=self._draw(samples),
         )
 
     def use_effects(self, effects: Sequence[EffectUse]) -> None:

@@ -85,7 +85,7 @@ def _rig(rig: LiveRig) -> Section:
             Prose(
                 'Simulator, trajectory, estimator and recorder ran as four processes that spoke '
                 'over DDS. Motor M went through 0, 5, 7, 5 and 4 degrees with the tip against the '
-                'load cell. The estimator saw the motors alone: encoders and torques, with noise.'
+                'load cell. The estimator saw the motors alone: their encoders and torques.'
             ),
             Picture(
                 estimate_figure(rig.recording),

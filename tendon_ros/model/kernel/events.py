@@ -17,6 +17,7 @@ from tendon_ros.model.kernel.structure import (
 
 SLIDE, STICK, MEET, SLACKEN = 0, 1, 2, 3  # kinds of events
 
+
 def state_at(
     m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, at: int
 ) -> None:

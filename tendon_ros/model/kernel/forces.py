@@ -19,6 +19,7 @@ from tendon_ros.model.kernel.structure import (
     WIDTH, budget_law, torque_law,
 )  # fmt: skip
 
+
 def touch(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
     """Set force and event function of every contact: closed where that is positive."""
     for k in range(K):

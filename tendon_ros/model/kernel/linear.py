@@ -21,6 +21,7 @@ from tendon_ros.model.kernel.structure import (
 
 GAMMA = 0.25
 
+
 def linearise(m: Floats, d: Ints, w: Floats) -> None:
     """Keep the derivatives just evaluated, which the stages of a step overwrite."""
     for k in range(M):

@@ -15,6 +15,7 @@ from tendon_ros.model.kernel.structure import (
     elongation_law, tension_law, winding_law,
 )  # fmt: skip
 
+
 def clipped(value: float, low: float, high: float) -> float:
     """Return the value, no less than low and no more than high."""
     return low if value < low else (high if value > high else value)

@@ -11,12 +11,29 @@ from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, EPOCH, F, FIRST, Floats, Ints, M, N, NEXT, PERIOD,
-    ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
+    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, DRY, EPOCH, F, FIRST, Floats, Ints, M, MODE, N, NEXT,
+    PERIOD, ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
 
+LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
 MOST_STEPS = 200_000  # between two ticks
 DONE, DIVERGED = 0, 1
+
+
+def longest(d: Ints, g: Ints, s: Floats) -> float:
+    """
+    Return the longest step that may be taken [s].
+
+    The error of a step sees what moves. Where signals push, what stands still may soon move:
+    a step that strides over a rise and fall of the signal would never know.
+    """
+    if s[2] <= 1.0:
+        return 1e300
+    for i in range(N):
+        if d[DRY + i] == 1 and g[MODE + i] == 0:
+            return LONGEST_STUCK
+    return LONGEST
+
 
 def advance(
     m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, end: float,
@@ -48,7 +65,7 @@ def advance(
             for k in range(M):
                 w[SLACK_START + k] = w[SLACK + k]
             whole = stop - t
-            h = min(c[STEP], whole)
+            h = min(c[STEP], whole, longest(d, g, s))
             if h > 0.7 * whole and h < whole:
                 h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
             error = step(m, d, w, g, s, c, t, h)
@@ -118,9 +135,7 @@ def rollout(
             control(m, d, w, g, s, c, setpoint, U * n)
             sense(m, d, w, c, noise, START, 1)
             record(m, d, w, c, c[CLOCK], rows, every, START)
-            status = advance(
-                m, d, w, g, s, c, (c[TICK] + 1.0) * m[PERIOD], noise, rows, every, 0
-            )
+            status = advance(m, d, w, g, s, c, (c[TICK] + 1.0) * m[PERIOD], noise, rows, every, 0)
             c[TICK] += 1.0
             if status != DONE:
                 break

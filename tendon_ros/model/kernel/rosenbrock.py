@@ -35,6 +35,7 @@ D34, D35 = 24.76722511418386, -6.594389125716872
 #: auxiliary states are of order one; this error of theirs counts as much as the angle's tolerance
 STATE_TOLERANCE = 1e-5
 
+
 def load(d: Ints, w: Floats, g: Ints, h: float, kick: float) -> None:
     """Start the right-hand side of a stage: f plus the direct dependence on time."""
     for i in range(N):
@@ -143,6 +144,4 @@ def between(d: Ints, w: Floats, part: float, to: int) -> None:
         v = w[STAGE + 4 * DIM + n]
         first = D21 * a + D22 * b + D23 * e + D24 * f + D25 * v
         second = D31 * a + D32 * b + D33 * e + D34 * f + D35 * v
-        w[to + n] = rest * w[START + n] + part * (
-            w[NEXT + n] + rest * (first + part * second)
-        )
+        w[to + n] = rest * w[START + n] + part * (w[NEXT + n] + rest * (first + part * second))

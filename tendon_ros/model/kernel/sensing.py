@@ -17,6 +17,7 @@ from tendon_ros.model.kernel.structure import (
 
 SMALLEST = 1e-10  # times nearer than this are one [s]
 
+
 def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
     """Return the torque that motor j reports: its command, or what its motion asks for."""
     i = MOTOR_PULLEY[j]
@@ -26,9 +27,7 @@ def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
     return (need - m[MOTOR_BIAS + j]) / m[MOTOR_GAIN + j]
 
 
-def sense(
-    m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torques: int
-) -> None:
+def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torques: int) -> None:
     """
     Let sensors read the state ``w[at:]``, whose forces have been evaluated.
 
