@@ -11,6 +11,7 @@ import numpy as np
 from bench.rig import five_pulleys, press_and_swing
 from bench.rounds import interleaved, Timing
 from bench.yardstick import compiler_found, Yardstick
+from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import Simulation
 
 
@@ -26,17 +27,17 @@ def against_c(*, continuous: bool, tolerance: float, every: int, rounds: int) ->
     """
     instrument = five_pulleys(continuous=continuous)
     setpoints = press_and_swing()
+    signals = Signals.through(0.0, instrument.control_period, setpoints.T)
     simulation = Simulation(instrument, tolerance=tolerance)
-    go = simulation.follow if continuous else simulation.run
 
     def ours() -> object:
         simulation.reset()
-        return go(setpoints, every)
+        return simulation.follow(signals, every) if continuous else simulation.run(setpoints, every)
 
     contestants: dict[str, Callable[[], object]] = {}
     if compiler_found():
         yardstick = Yardstick(instrument, tolerance=tolerance)
-        contestants['C'] = lambda: yardstick.run(setpoints, every)
+        contestants['C'] = lambda: yardstick.run(signals if continuous else setpoints, every)
     contestants['kernel'] = ours
     return interleaved(contestants, rounds)
 
@@ -59,6 +60,7 @@ def rollouts_per_second(tolerance: float, threads: int = 2, seconds: float = 3.0
     :return: rollouts a second, recorded at 100 Hz each.
     """
     setpoints = press_and_swing()
+    signals = Signals.through(0.0, five_pulleys().control_period, setpoints.T)
     simulations = [
         Simulation(five_pulleys(continuous=True), tolerance=tolerance) for _ in range(threads)
     ]
@@ -67,7 +69,7 @@ def rollouts_per_second(tolerance: float, threads: int = 2, seconds: float = 3.0
         done = 0
         while time.perf_counter() < end:
             simulation.reset()
-            simulation.follow(setpoints, every=10)
+            simulation.follow(signals, every=10)
             done += 1
         return done
 

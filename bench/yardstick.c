@@ -478,6 +478,14 @@ static void record(const Work *w, double t, const double *y, double *row)
 }
 
 /* Advance to `end`; with rows given, write one for each period that a step has passed. */
+/* Along signals, what stands still may soon move: see kernel/motion.py. */
+static double longest(const Work *w) {
+    if (!w->continuous) return 1e300;
+    for (int i = 0; i < N; i++)
+        if (w->mode[i] == 0) return 0.005;
+    return 0.05;
+}
+
 static int advance(const Rig *r, const double *table, Work *w, double *clock, double end,
                    double *suggested, double *rows, long *tick, long every)
 {
@@ -486,7 +494,7 @@ static int advance(const Rig *r, const double *table, Work *w, double *clock, do
     while (t < end - 1e-10) {
         if (++steps > 200000) return 1;
         linearise(r, w, t);
-        double whole = end - t, h = fmin(*suggested, whole);
+        double whole = end - t, h = fmin(fmin(*suggested, whole), longest(w));
         if (h > 0.7 * whole && h < whole) h = 0.6 * whole;
         double error = step(r, table, w, t, h);
         while (!(error <= 1.0)) {

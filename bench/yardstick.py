@@ -106,22 +106,26 @@ class Yardstick:
         self._rig.contact_law = int(contact.law == 'hunt_crossley')
         self.counts = (0, 0, 0)
 
-    def run(self, setpoints: FloatArray, every: int = 1) -> FloatArray:
+    def run(self, setpoints: FloatArray | Signals, every: int = 1) -> FloatArray:
         """
         Run from rest.
 
-        :param setpoints: shape (ticks, 2) [rad].
+        :param setpoints: shape (ticks, 2) [rad]; for continuous control also as ready signals.
         :param every: record every so many ticks.
         :return: rows as the kernel records them, shape (ticks, 22).
         :raises ArithmeticError: where it diverges.
         """
-        values = np.ascontiguousarray(setpoints.T)
-        ticks = len(setpoints)
         if self._continuous:
-            signals = Signals.through(0.0, self._rig.period[0], values)
-            values = np.concatenate([signals.value, signals.slope])
-            ticks -= 1
-        rows = np.zeros(((len(setpoints) - 1) // every + 1, 22))
+            signals = setpoints
+            if not isinstance(signals, Signals):
+                signals = Signals.through(0.0, self._rig.period[0], signals.T)
+            values = np.ascontiguousarray(np.concatenate([signals.value, signals.slope]))
+            ticks = signals.value.shape[1] - 1
+            rows = np.zeros((ticks // every + 1, 22))
+        else:
+            values = np.ascontiguousarray(np.asarray(setpoints).T)
+            ticks = values.shape[1]
+            rows = np.zeros(((ticks - 1) // every + 1, 22))
         counts = (ctypes.c_long * 3)()
         pointer = ctypes.POINTER(ctypes.c_double)
         status = self._call(

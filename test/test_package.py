@@ -21,7 +21,6 @@ SCRIPTS = {
     for entry in distribution('tendon_ros').entry_points
     if entry.group == 'console_scripts'
 }
-#: imported name of what pip calls otherwise
 #: import names that are not the names in the index; pydantic brings its core
 PIP_NAMES = {
     'yaml': 'pyyaml',
