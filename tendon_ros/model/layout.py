@@ -211,6 +211,9 @@ class _Packer:
                 d[at['REFERENCE'] + j] = references[motor.name]
                 d[at['INTEGRAL'] + j] = len(states)
                 states.append((-1, at.motor_pulley[j]))
+        d[at['DRIVEN']] = len(prescribed)
+        d[at['PUSHED']] = len(pushed)
+        d[at['BRISTLED']] = int((d[at['BRISTLE'] : at['BRISTLE'] + n] >= 0).sum())
         self._pack_curves(m, d, tail_m)
         for hook in HOOKS:
             d[at[f'{hook.upper()}S']] = at.length('d') + len(tail_d)

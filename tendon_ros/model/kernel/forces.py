@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from tendon_ros.model.kernel.loops import clipped, pull, smooth, wind
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BUDGET, BUDGETS, BUDGET_L, BUDGET_W,
-    COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON, CONTACT_POSITION,
-    CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING, DRIVE, DRY, EPOCH, F,
-    FORCE, FORCE_Q, FORCE_V, Floats, GAP, INERTIA, INPUT, INTEGRAL, Ints, K, KD, KI, KP,
-    LIMIT, LOAD, LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT,
-    MOTOR_PULLEY, N, PUSH, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B, STATE_RATE, STATE_T,
-    STATE_Z, STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL, TOUCH, TURN, U,
-    WIDTH, budget_law, torque_law,
+    ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
+    BUDGET_W, COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON,
+    CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING, DRIVE,
+    DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, INERTIA, INPUT, INTEGRAL,
+    Ints, K, KD, KI, KP, LIMIT, LOAD, LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN,
+    MOTOR_LIMIT, MOTOR_PULLEY, N, PUSH, PUSHED, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B,
+    STATE_RATE, STATE_T, STATE_Z, STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL,
+    TOUCH, TURN, U, WIDTH, budget_law, torque_law,
 )  # fmt: skip
 
 
@@ -92,6 +92,8 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
         w[BUDGET + i] += limit
         w[BUDGET_W + i] += by_w * way
         w[BUDGET_L + i] += by_l
+    if d[BRISTLED] == 0:
+        return
     for i in range(N):
         z = d[BRISTLE + i]
         if z >= 0:
@@ -152,9 +154,11 @@ def evaluate(
     drive(m, d, w, s, c, t, at)
     for i in range(N):
         w[TORQUE + i] = w[INPUT + i] - m[DAMPING + i] * w[at + N + i]
-        if d[PUSH + i] >= 0:
-            push, _, _ = smooth(s, d[PUSH + i], t)
-            w[TORQUE + i] += push
+    if d[PUSHED] > 0:
+        for i in range(N):
+            if d[PUSH + i] >= 0:
+                push, _, _ = smooth(s, d[PUSH + i], t)
+                w[TORQUE + i] += push
     for k in range(M):
         for e in range(WIDTH):
             i = LOOP_PULLEY[WIDTH * k + e]
@@ -175,18 +179,23 @@ def evaluate(
     rub(m, d, w, g, at)
     for i in range(N):
         w[F + i] = w[at + N + i]
-        if d[DRIVE + i] == 1:
-            w[F + N + i] = w[ACCELERATION + i]
-        elif g[MODE + i] == 0:
+        if g[MODE + i] == 0:
             w[F + N + i] = 0.0
         else:
             w[F + N + i] = (w[TORQUE + i] + w[SIDE + i] * w[BUDGET + i]) / m[INERTIA + i]
+    if d[DRIVEN] > 0:  # what is prescribed is not integrated
+        for i in range(N):
+            if d[DRIVE + i] == 1:
+                w[F + i] = 0.0
+                w[F + N + i] = 0.0
     for z in range(d[ACTIVE]):
         w[F + 2 * N + z] = w[STATE_RATE + z]
 
 
 def prescribe(m: Floats, d: Ints, w: Floats, s: Floats, t: float, at: int) -> None:
     """Place the pulleys whose motion is prescribed."""
+    if d[DRIVEN] == 0:
+        return
     for i in range(N):
         if d[DRIVE + i] == 1:
             value, slope, second = smooth(s, d[MOTION + i], t)

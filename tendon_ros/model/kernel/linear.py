@@ -12,14 +12,12 @@ from tendon_ros.model.kernel.loops import smooth
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, ARM, BAND, BUDGET_L, BUDGET_W, CHI, CONTACT_ARM, CONTACT_PULLEY,
     CONTACT_RATIO, DRIVE, FORCE_Q, FORCE_V, Floats, INERTIA, INTEGRAL, Ints, J_A, J_ANGLE,
-    J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_RADIUS, J_S,
-    J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOOP_PULLEY, M, MATRIX, MODE, MOTOR_GAIN,
-    MOTOR_PULLEY, N, OUTER, PUSH, RADIUS, REFERENCE, RIGHT, SIDE, SIGMA, SPAN, START, STATE_A,
-    STATE_B, STATE_LOOP, STATE_PULLEY, STATE_S, STATE_T, STATE_Z, TENSION_D, TENSION_R,
-    TORQUE_T, TORQUE_W, TOTAL_D, TURN, U, WIDTH,
+    J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS, J_RADIUS,
+    J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOOP_PULLEY, M, MATRIX, MODE,
+    MOTOR_GAIN, MOTOR_PULLEY, N, OUTER, PUSH, RADIUS, REFERENCE, RIGHT, SIDE, SIGMA, SPAN,
+    START, STATE_A, STATE_B, STATE_LOOP, STATE_PULLEY, STATE_S, STATE_T, STATE_Z, TENSION_D,
+    TENSION_R, TORQUE_T, TORQUE_W, TOTAL_D, TURN, U, WIDTH,
 )  # fmt: skip
-
-GAMMA = 0.25
 
 
 def linearise(m: Floats, d: Ints, w: Floats) -> None:
@@ -40,6 +38,8 @@ def linearise(m: Floats, d: Ints, w: Floats) -> None:
     for k in range(K):
         w[J_CONTACT + k] = m[CONTACT_ARM + k] * w[FORCE_Q + k]
         w[J_CONTACT_RATE + k] = m[CONTACT_ARM + k] * w[FORCE_V + k]
+        for e in range(WIDTH):
+            w[J_PRESS + WIDTH * k + e] = m[CONTACT_RATIO + WIDTH * k + e]
     for z in range(d[ACTIVE]):
         w[J_A + z] = w[STATE_A + z]
         w[J_B + z] = w[STATE_B + z]
@@ -51,6 +51,25 @@ def linearise(m: Floats, d: Ints, w: Floats) -> None:
 def still(d: Ints, g: Ints, i: int) -> bool:
     """Whether pulley i takes no part in the equations: it sticks, or its motion is prescribed."""
     return d[DRIVE + i] == 1 or g[MODE + i] == 0
+
+
+def hold(d: Ints, w: Floats, g: Ints) -> None:
+    """Take the rows of pulleys that are still (stuck or prescribed) out of the equations."""
+    for i in range(N):
+        if not still(d, g, i):
+            continue
+        w[J_ANGLE + i] = 0.0
+        w[J_SPEED + i] = 0.0
+        for n in range(M * WIDTH):
+            if LOOP_PULLEY[n] == i:
+                w[J_ARM + n] = 0.0
+                w[J_GRIP + n] = 0.0
+        for n in range(K * WIDTH):
+            if CONTACT_PULLEY[n] == i:
+                w[J_PRESS + n] = 0.0
+        for z in range(d[ACTIVE]):
+            if d[STATE_PULLEY + z] == i:
+                w[J_T + z] = 0.0
 
 
 def outer(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> None:
@@ -94,7 +113,7 @@ def outer(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> None:
                 push += ratio * w[J_CONTACT_RATE + k] * w[ACCELERATION + i]
         for e in range(WIDTH):
             i = CONTACT_PULLEY[WIDTH * k + e]
-            w[OUTER + N + i] -= m[CONTACT_RATIO + WIDTH * k + e] * push
+            w[OUTER + N + i] -= w[J_PRESS + WIDTH * k + e] * push
     for i in range(N):
         if still(d, g, i):
             w[OUTER + N + i] = 0.0
@@ -102,18 +121,17 @@ def outer(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> None:
             w[OUTER + N + i] /= m[INERTIA + i]
 
 
-def factor(m: Floats, d: Ints, w: Floats, g: Ints, h: float) -> None:
-    """Set up and factorise the reduced matrix for step h; rows of pulleys that are still are 1."""
-    p = 1.0 / (GAMMA * h)
+def factor(m: Floats, d: Ints, w: Floats, p: float, per: float) -> None:
+    """Set up and factorise the reduced matrix for a step with p = 1 / (gamma h) = 1 / per."""
     for n in range(N * SPAN):
         w[MATRIX + n] = 0.0
     for i in range(N):
-        w[MATRIX + SPAN * i + BAND] = m[INERTIA + i] * p - w[J_ANGLE + i] / p - w[J_SPEED + i]
+        w[MATRIX + SPAN * i + BAND] = m[INERTIA + i] * p - w[J_ANGLE + i] * per - w[J_SPEED + i]
     for k in range(M):
-        w[KAPPA + k] = w[J_LOOP + k] / p + w[J_LOOP_RATE + k]
-        w[SIGMA + k] = w[J_TOTAL + k] / p
+        w[KAPPA + k] = w[J_LOOP + k] * per + w[J_LOOP_RATE + k]
+        w[SIGMA + k] = w[J_TOTAL + k] * per
     for z in range(d[ACTIVE]):
-        by = (w[J_A + z] / p + w[J_B + z]) / (p - w[J_Z + z])
+        by = (w[J_A + z] * per + w[J_B + z]) / (p - w[J_Z + z])
         k = d[STATE_LOOP + z]
         if k >= 0:
             w[KAPPA + k] += w[J_T + z] * by
@@ -129,19 +147,14 @@ def factor(m: Floats, d: Ints, w: Floats, g: Ints, h: float) -> None:
                 j = LOOP_PULLEY[WIDTH * k + f]
                 w[MATRIX + SPAN * i + BAND + j - i] += row * w[J_RADIUS + WIDTH * k + f]
     for k in range(K):
-        stiff = w[J_CONTACT + k] / p + w[J_CONTACT_RATE + k]
+        stiff = w[J_CONTACT + k] * per + w[J_CONTACT_RATE + k]
         for e in range(WIDTH):
             i = CONTACT_PULLEY[WIDTH * k + e]
             for f in range(WIDTH):
                 j = CONTACT_PULLEY[WIDTH * k + f]
                 w[MATRIX + SPAN * i + BAND + j - i] += (
-                    m[CONTACT_RATIO + WIDTH * k + e] * stiff * m[CONTACT_RATIO + WIDTH * k + f]
+                    w[J_PRESS + WIDTH * k + e] * stiff * m[CONTACT_RATIO + WIDTH * k + f]
                 )
-    for i in range(N):
-        if still(d, g, i):
-            for n in range(SPAN):
-                w[MATRIX + SPAN * i + n] = 0.0
-            w[MATRIX + SPAN * i + BAND] = 1.0
     # LU within the band, without pivoting: the inertia keeps the diagonal in front
     for i in range(N):
         pivot = 1.0 / w[MATRIX + SPAN * i + BAND]
@@ -154,10 +167,8 @@ def factor(m: Floats, d: Ints, w: Floats, g: Ints, h: float) -> None:
                     w[low + n] -= w[low] * w[MATRIX + SPAN * i + BAND + n]
 
 
-def solve(m: Floats, d: Ints, w: Floats, g: Ints, h: float, to: int) -> None:
+def solve(m: Floats, d: Ints, w: Floats, p: float, per: float, to: int) -> None:
     """Solve for one stage: right-hand side in ``w[RIGHT:]``, solution into ``w[to:]``."""
-    p = 1.0 / (GAMMA * h)
-    per = GAMMA * h
     for i in range(N):
         w[to + N + i] = m[INERTIA + i] * w[RIGHT + N + i] + w[J_ANGLE + i] * w[RIGHT + i] * per
     for k in range(M):
@@ -190,10 +201,7 @@ def solve(m: Floats, d: Ints, w: Floats, g: Ints, h: float, to: int) -> None:
         press *= w[J_CONTACT + k] * per
         for e in range(WIDTH):
             n = WIDTH * k + e
-            w[to + N + CONTACT_PULLEY[n]] -= m[CONTACT_RATIO + n] * press
-    for i in range(N):
-        if still(d, g, i):
-            w[to + N + i] = 0.0
+            w[to + N + CONTACT_PULLEY[n]] -= w[J_PRESS + n] * press
     for i in range(N):
         for r in range(1, BAND + 1):
             if i - r >= 0:

@@ -6,7 +6,7 @@ import math
 
 from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
-from tendon_ros.model.kernel.linear import linearise, outer
+from tendon_ros.model.kernel.linear import hold, linearise, outer
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
@@ -59,8 +59,11 @@ def advance(
         while t < stop - SMALLEST:
             steps += 1
             linearise(m, d, w)
+            hold(d, w, g)
             outer(m, d, w, g, s, t)
-            for n in range(2 * N + d[ACTIVE]):
+            for n in range(2 * N):
+                w[FIRST + n] = w[F + n]
+            for n in range(2 * N, 2 * N + d[ACTIVE]):
                 w[FIRST + n] = w[F + n]
             for k in range(M):
                 w[SLACK_START + k] = w[SLACK + k]
@@ -99,7 +102,9 @@ def advance(
                 change(m, d, w, g, s, c, t, kind, index)
             elif smoothly == 1:
                 evaluate(m, d, w, g, s, c, t, NEXT)
-            for n in range(2 * N + d[ACTIVE]):
+            for n in range(2 * N):
+                w[START + n] = w[NEXT + n]
+            for n in range(2 * N, 2 * N + d[ACTIVE]):
                 w[START + n] = w[NEXT + n]
             if steps > MOST_STEPS or not abs(w[START]) < 1e6:
                 return DIVERGED

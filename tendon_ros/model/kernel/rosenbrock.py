@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 
 from tendon_ros.model.kernel.forces import evaluate, prescribe
-from tendon_ros.model.kernel.linear import factor, solve, still
+from tendon_ros.model.kernel.linear import factor, solve
 from tendon_ros.model.kernel.structure import (
     ACTIVE, DIM, F, FIRST, Floats, Ints, N, NEXT, OUTER, RIGHT, STAGE, START, TOLERANCE, TRIAL,
 )  # fmt: skip
 
+GAMMA = 0.25
 A21 = 1.544
 A31, A32 = 0.9466785280815826, 0.2557011698983284
 A41, A42, A43 = 3.314825187068521, 2.896124015972201, 0.9986419139977817
@@ -36,13 +37,12 @@ D34, D35 = 24.76722511418386, -6.594389125716872
 STATE_TOLERANCE = 1e-5
 
 
-def load(d: Ints, w: Floats, g: Ints, h: float, kick: float) -> None:
+def load(d: Ints, w: Floats, kick: float) -> None:
     """Start the right-hand side of a stage: f plus the direct dependence on time."""
-    for i in range(N):
-        w[RIGHT + i] = 0.0 if still(d, g, i) else w[F + i]
-        w[RIGHT + N + i] = w[F + N + i] + h * kick * w[OUTER + N + i]
+    for n in range(2 * N):
+        w[RIGHT + n] = w[F + n] + kick * w[OUTER + n]
     for n in range(2 * N, 2 * N + d[ACTIVE]):
-        w[RIGHT + n] = w[F + n] + h * kick * w[OUTER + n]
+        w[RIGHT + n] = w[F + n] + kick * w[OUTER + n]
 
 
 def step(
@@ -54,7 +54,9 @@ def step(
     The error is in units of the tolerance: a step is good below 1.
     """
     size = 2 * N + d[ACTIVE]
-    factor(m, d, w, g, h)
+    p = 1.0 / (GAMMA * h)
+    gamma_h = GAMMA * h
+    factor(m, d, w, p, gamma_h)
     u1 = STAGE
     u2 = STAGE + DIM
     u3 = STAGE + 2 * DIM
@@ -62,64 +64,94 @@ def step(
     u5 = STAGE + 4 * DIM
     u6 = STAGE + 5 * DIM
     per = 1.0 / h
-    for n in range(size):
+    for n in range(2 * N):
         w[F + n] = w[FIRST + n]
-    load(d, w, g, h, G1)
-    solve(m, d, w, g, h, u1)
+    for n in range(2 * N, size):
+        w[F + n] = w[FIRST + n]
+    load(d, w, h * G1)
+    solve(m, d, w, p, gamma_h, u1)
 
-    for n in range(size):
+    for n in range(2 * N):
+        w[TRIAL + n] = w[START + n] + A21 * w[u1 + n]
+    for n in range(2 * N, size):
         w[TRIAL + n] = w[START + n] + A21 * w[u1 + n]
     prescribe(m, d, w, s, t + T2 * h, TRIAL)
     evaluate(m, d, w, g, s, c, t + T2 * h, TRIAL)
-    load(d, w, g, h, G2)
-    for n in range(size):
+    load(d, w, h * G2)
+    for n in range(2 * N):
         w[RIGHT + n] += per * (C21 * w[u1 + n])
-    solve(m, d, w, g, h, u2)
+    for n in range(2 * N, size):
+        w[RIGHT + n] += per * (C21 * w[u1 + n])
+    solve(m, d, w, p, gamma_h, u2)
 
-    for n in range(size):
+    for n in range(2 * N):
+        w[TRIAL + n] = w[START + n] + A31 * w[u1 + n] + A32 * w[u2 + n]
+    for n in range(2 * N, size):
         w[TRIAL + n] = w[START + n] + A31 * w[u1 + n] + A32 * w[u2 + n]
     prescribe(m, d, w, s, t + T3 * h, TRIAL)
     evaluate(m, d, w, g, s, c, t + T3 * h, TRIAL)
-    load(d, w, g, h, G3)
-    for n in range(size):
+    load(d, w, h * G3)
+    for n in range(2 * N):
         w[RIGHT + n] += per * (C31 * w[u1 + n] + C32 * w[u2 + n])
-    solve(m, d, w, g, h, u3)
+    for n in range(2 * N, size):
+        w[RIGHT + n] += per * (C31 * w[u1 + n] + C32 * w[u2 + n])
+    solve(m, d, w, p, gamma_h, u3)
 
-    for n in range(size):
+    for n in range(2 * N):
+        w[TRIAL + n] = w[START + n] + A41 * w[u1 + n] + A42 * w[u2 + n] + A43 * w[u3 + n]
+    for n in range(2 * N, size):
         w[TRIAL + n] = w[START + n] + A41 * w[u1 + n] + A42 * w[u2 + n] + A43 * w[u3 + n]
     prescribe(m, d, w, s, t + T4 * h, TRIAL)
     evaluate(m, d, w, g, s, c, t + T4 * h, TRIAL)
-    load(d, w, g, h, G4)
-    for n in range(size):
+    load(d, w, h * G4)
+    for n in range(2 * N):
         w[RIGHT + n] += per * (C41 * w[u1 + n] + C42 * w[u2 + n] + C43 * w[u3 + n])
-    solve(m, d, w, g, h, u4)
+    for n in range(2 * N, size):
+        w[RIGHT + n] += per * (C41 * w[u1 + n] + C42 * w[u2 + n] + C43 * w[u3 + n])
+    solve(m, d, w, p, gamma_h, u4)
 
-    for n in range(size):
+    for n in range(2 * N):
+        w[TRIAL + n] = (
+            w[START + n] + A51 * w[u1 + n] + A52 * w[u2 + n] + A53 * w[u3 + n] + A54 * w[u4 + n]
+        )
+    for n in range(2 * N, size):
         w[TRIAL + n] = (
             w[START + n] + A51 * w[u1 + n] + A52 * w[u2 + n] + A53 * w[u3 + n] + A54 * w[u4 + n]
         )
     prescribe(m, d, w, s, t + h, TRIAL)
     evaluate(m, d, w, g, s, c, t + h, TRIAL)
-    load(d, w, g, h, 0.0)
-    for n in range(size):
+    load(d, w, 0.0)
+    for n in range(2 * N):
         w[RIGHT + n] += per * (
             C51 * w[u1 + n] + C52 * w[u2 + n] + C53 * w[u3 + n] + C54 * w[u4 + n]
         )
-    solve(m, d, w, g, h, u5)
+    for n in range(2 * N, size):
+        w[RIGHT + n] += per * (
+            C51 * w[u1 + n] + C52 * w[u2 + n] + C53 * w[u3 + n] + C54 * w[u4 + n]
+        )
+    solve(m, d, w, p, gamma_h, u5)
 
-    for n in range(size):
+    for n in range(2 * N):
+        w[TRIAL + n] += w[u5 + n]
+    for n in range(2 * N, size):
         w[TRIAL + n] += w[u5 + n]
     prescribe(m, d, w, s, t + h, TRIAL)
     evaluate(m, d, w, g, s, c, t + h, TRIAL)
-    load(d, w, g, h, 0.0)
-    for n in range(size):
+    load(d, w, 0.0)
+    for n in range(2 * N):
         w[RIGHT + n] += per * (
             C61 * w[u1 + n] + C62 * w[u2 + n] + C63 * w[u3 + n] + C64 * w[u4 + n] + C65 * w[u5 + n]
         )
-    solve(m, d, w, g, h, u6)
+    for n in range(2 * N, size):
+        w[RIGHT + n] += per * (
+            C61 * w[u1 + n] + C62 * w[u2 + n] + C63 * w[u3 + n] + C64 * w[u4 + n] + C65 * w[u5 + n]
+        )
+    solve(m, d, w, p, gamma_h, u6)
 
     total = 0.0
-    for n in range(size):
+    for n in range(2 * N):
+        w[NEXT + n] = w[TRIAL + n] + w[u6 + n]
+    for n in range(2 * N, size):
         w[NEXT + n] = w[TRIAL + n] + w[u6 + n]
     for i in range(N):
         # an error in velocity counts by the angle it makes within the step or 10 ms

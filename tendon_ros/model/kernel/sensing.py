@@ -27,6 +27,18 @@ def effort(m: Floats, d: Ints, w: Floats, c: Floats, j: int) -> float:
     return (need - m[MOTOR_BIAS + j]) / m[MOTOR_GAIN + j]
 
 
+def delayed(m: Floats, c: Floats, q: int, tick: int, truth: float) -> float:
+    """Remember what sensor q sees at a tick, and return what it saw a delay ago."""
+    c[PAST + RING * q + tick % RING] = truth
+    late = m[SENSOR_DELAY + q] / m[PERIOD]
+    back = min(int(late), tick)
+    value = c[PAST + RING * q + (tick - back) % RING]
+    if late > back and tick > back:
+        older = c[PAST + RING * q + (tick - back - 1) % RING]
+        value += (late - back) * (older - value)
+    return value
+
+
 def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torques: int) -> None:
     """
     Let sensors read the state ``w[at:]``, whose forces have been evaluated.
@@ -35,7 +47,6 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
     (``torques`` 0) before.
     """
     tick = int(c[TICK])
-    slot = tick % RING
     for q in range(Q):
         source = SENSOR_SOURCE[q]
         if (source == 2) != (torques == 1):
@@ -55,14 +66,9 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
         else:
             i = LOOP_PULLEY[index]
             truth = -m[ARM + index] * w[TURN + i] * w[TENSION + index // WIDTH]
-        c[PAST + RING * q + slot] = truth
-        late = m[SENSOR_DELAY + q] / m[PERIOD]
-        back = int(late)
-        back = min(back, tick)
-        value = c[PAST + RING * q + (tick - back) % RING]
-        if late > back and tick > back:
-            older = c[PAST + RING * q + (tick - back - 1) % RING]
-            value += (late - back) * (older - value)
+        value = truth
+        if d[REMEMBERS] == 1:
+            value = delayed(m, c, q, tick, truth)
         value = m[SENSOR_GAIN + q] * value + m[SENSOR_OFFSET + q]
         if d[SENSOR_RECTIFIED + q] == 1:
             value = abs(value)

@@ -92,6 +92,9 @@ ENCODER: int  # U: the sensor that each controller reads
 INTEGRAL: int  # U: auxiliary state that integrates a continuous controller's error, or -1
 BRISTLE: int  # N: auxiliary state of the pre-sliding friction, or -1
 DRY: int  # N: 1 where dry friction sticks rigidly
+DRIVEN: int  # how many pulleys are prescribed, pushed by a signal, pre-sliding
+PUSHED: int
+BRISTLED: int
 CURVE_CELLS: int  # M
 CURVE_OFFSET: int  # M: where in m the four coefficients of each cell begin
 CONTACT_LAW: int  # K: 0 spring and damper, 1 Hunt-Crossley
@@ -154,8 +157,9 @@ J_ARM: int
 J_GRIP: int  # M * WIDTH: of the friction by the sum of tensions
 J_ANGLE: int  # N: of the torque by the pulley's own angle and velocity
 J_SPEED: int
-J_CONTACT: int  # K
+J_CONTACT: int  # K: of the contact's torque at ratio 1
 J_CONTACT_RATE: int
+J_PRESS: int  # K * WIDTH: how that torque turns the pulleys
 J_A: int  # STATES
 J_B: int
 J_Z: int
