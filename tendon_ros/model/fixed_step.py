@@ -97,13 +97,14 @@ class FixedStep:
         flat = wished.ravel().tolist()
         rows = [0.0] * ((len(wished) - 1) // every + 1) * at['WIDTH_ROW']
         m, d, w, c = run._m, run._d, run._work, run._carried
+        c[at['ROOM']] = float(len(rows) // at['WIDTH_ROW'])
         for tick in range(len(wished)):
             c[at['TICK']] = float(tick)
             self._begin()
-            kernel.sense(m, d, w, c, [], at['START'])
-            kernel.control(m, d, w, c, flat, at['U'] * tick)
+            kernel.sense(m, d, w, c, [], at['START'], 0)
+            kernel.control(m, d, w, run._modes, self._signals, c, flat, at['U'] * tick)
             self._begin()
-            kernel.sense(m, d, w, c, [], at['START'])
+            kernel.sense(m, d, w, c, [], at['START'], 1)
             kernel.record(m, d, w, c, c[at['CLOCK']], rows, every, at['START'])
             for n in range(self._steps):
                 if n:

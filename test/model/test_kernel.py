@@ -17,7 +17,7 @@ from tendon_ros.model.simulation import predict, Simulation
 IN_SITU = {
     'nothing': (),
     'viscous': (('viscous_friction', 'pulley_1', {'damping': 0.05}),),
-    'gravity': (('gravity', 'pulley_3', {'torque': 0.3, 'angle': 0.4}),),
+    'gravity': (('gravity', 'pulley_3', {'torque': 0.3, 'phase': 0.4}),),
     'spring': (('joint_spring', 'pulley_2', {'stiffness': 2.0, 'rest': 0.1}),),
     'eccentricity': (
         ('eccentricity', 'pulley_1', {'amplitude': 0.3, 'phase': 0.7}),
@@ -80,6 +80,7 @@ class Stepper:
         h = duration / count
         for n in range(count):
             kernel.linearise(m, d, w)
+            kernel.hold(d, w, g)
             kernel.outer(m, d, w, g, self.signals, n * h)
             w[at['FIRST'] : at['FIRST'] + size] = w[at['F'] : at['F'] + size]
             kernel.step(m, d, w, g, self.signals, c, n * h, h)
@@ -113,13 +114,15 @@ class Stepper:
         slope(t, state)
         w[at['START'] : at['START'] + size] = state.tolist()
         kernel.linearise(m, d, w)
+        kernel.hold(d, w, g)
         kernel.outer(m, d, w, g, self.signals, t)
-        kernel.factor(m, d, w, g, h)
+        per = 0.25 * h
+        kernel.factor(m, d, w, 1.0 / per, per)
         free = np.array([not kernel.still(d, g, i) for i in range(n)])
         free = np.concatenate([free, free, np.ones(size - 2 * n, dtype=bool)])
         right = np.random.default_rng(0).standard_normal(size) * free
         w[at['RIGHT'] : at['RIGHT'] + size] = right.tolist()
-        kernel.solve(m, d, w, g, h, at['STAGE'])
+        kernel.solve(m, d, w, 1.0 / per, per, at['STAGE'])
         ours = np.array(w[at['STAGE'] : at['STAGE'] + size])
         dense = np.linalg.solve(np.eye(size) / (0.25 * h) - jacobian * free[:, None], right)
         kicks = np.array(w[at['OUTER'] : at['OUTER'] + size])

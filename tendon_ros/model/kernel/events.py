@@ -11,11 +11,14 @@ from __future__ import annotations
 from tendon_ros.model.kernel.forces import evaluate, prescribe
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BUDGET, CLOCK, DRIVE, DRY, Floats, GAP, Ints, K, M, MODE, N, NEXT, PENDING, SLACK,
-    SLACK_START, START, TORQUE, TOUCH, TRIAL,
+    ACTIVE, BUDGET, CLOCK, COUNT, DRIVE, DRY, Floats, GAP, Ints, K, M, MODE, N, NEXT, PENDING,
+    SLACK, SLACK_START, START, TORQUE, TOUCH, TRIAL,
 )  # fmt: skip
 
 SLIDE, STICK, MEET, SLACKEN = 0, 1, 2, 3  # kinds of events
+#: friction holds a little more than its budget: a pulley that has come to rest where the two are
+#: equal must not be let go, and caught again, by rounding
+GRIP = 1.0 + 1e-9
 
 
 def state_at(
@@ -26,7 +29,7 @@ def state_at(
     evaluate(m, d, w, g, s, c, t, at)
     freed = False
     for i in range(N):
-        if d[DRY + i] == 1 and g[MODE + i] == 0 and abs(w[TORQUE + i]) > w[BUDGET + i]:
+        if d[DRY + i] == 1 and g[MODE + i] == 0 and abs(w[TORQUE + i]) > GRIP * w[BUDGET + i]:
             g[MODE + i] = 1 if w[TORQUE + i] > 0.0 else -1
             freed = True
     if freed:
@@ -59,7 +62,7 @@ def due(w: Floats, g: Ints, kind: int, index: int, at: int) -> float:
     if kind == SLIDE:
         return g[MODE + index] * w[at + N + index]
     if kind == STICK:
-        return w[BUDGET + index] - abs(w[TORQUE + index])
+        return GRIP * w[BUDGET + index] - abs(w[TORQUE + index])
     if kind == MEET:
         return w[GAP + index] if g[TOUCH + index] == 1 else -w[GAP + index]
     return w[SLACK + index] if w[SLACK_START + index] > 0.0 else -w[SLACK + index]
@@ -79,7 +82,8 @@ def locate(
         return low
     high = 1.0
     part = high
-    for _ in range(12):
+    side = 0
+    for _ in range(20):
         part = (value * high - last * low) / (value - last)
         between(d, w, part, TRIAL)
         if kind != SLIDE:
@@ -89,14 +93,19 @@ def locate(
         if now > 0.0:
             low = part
             value = now
-            last *= 0.5
+            if side == 1:
+                last *= 0.5
+            side = 1
         else:
             high = part
             last = now
-            value *= 0.5
-        if high - low < 1e-9 or abs(now) < 1e-13:
+            if side == -1:
+                value *= 0.5
+            side = -1
+        if high - low < 1e-9 or (kind == SLIDE and abs(now) < 1e-13):
             break
-    return part
+    # a sliding pulley is stopped where it stands; all else ends on the side where it has happened
+    return part if kind == SLIDE else high
 
 
 def crossing(
@@ -112,7 +121,8 @@ def crossing(
         if d[DRY + i] == 1 and g[MODE + i] != 2:
             w[PENDING + i] = due(w, g, STICK if g[MODE + i] == 0 else SLIDE, i, NEXT)
     for k in range(K):
-        w[PENDING + N + k] = due(w, g, MEET, k, NEXT)
+        value = due(w, g, MEET, k, NEXT)
+        w[PENDING + N + k] = value if value < -1e-12 else 1.0  # at rest on the wall: rounding
     for k in range(M):
         value = due(w, g, SLACKEN, k, NEXT)
         known = abs(w[SLACK_START + k]) > 1e-9 and value < -1e-9
@@ -139,12 +149,17 @@ def crossing(
 def change(
     m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, kind: int, index: int
 ) -> None:
-    """Let an event happen in the state ``w[NEXT:]``."""
+    """
+    Let an event happen in the state ``w[NEXT:]``.
+
+    A stuck pulley is let go by :func:`state_at`, and only where it is pushed harder than it holds:
+    let go a rounding too early, it would stick again at once, and so on for ever.
+    """
     if kind == SLIDE:
         w[NEXT + N + index] = 0.0
         g[MODE + index] = 0
-    elif kind == STICK:
-        g[MODE + index] = 1 if w[TORQUE + index] > 0.0 else -1
     elif kind == MEET:
         g[TOUCH + index] = 1 - g[TOUCH + index]
     state_at(m, d, w, g, s, c, t, NEXT)
+    if kind != STICK or g[MODE + index] != 0:  # not where the search fell a hair short
+        g[COUNT + 2] += 1

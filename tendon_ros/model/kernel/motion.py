@@ -84,7 +84,6 @@ def advance(
             evaluate(m, d, w, g, s, c, t + h, NEXT)
             part, kind, index = crossing(m, d, w, g, s, c, t, h)
             if part < 2.0:
-                g[COUNT + 2] += 1
                 h *= part
                 step(m, d, w, g, s, c, t, h)
                 evaluate(m, d, w, g, s, c, t + h, NEXT)
