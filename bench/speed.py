@@ -32,7 +32,9 @@ def against_c(*, continuous: bool, tolerance: float, every: int, rounds: int) ->
 
     def ours() -> object:
         simulation.reset()
-        return simulation.follow(signals, every) if continuous else simulation.run(setpoints, every)
+        return (
+            simulation.follow(signals, every) if continuous else simulation.run(setpoints, every)
+        )
 
     contestants: dict[str, Callable[[], object]] = {}
     if compiler_found():
