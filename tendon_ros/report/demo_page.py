@@ -48,13 +48,15 @@ class RealTool:
 
 def write_demo_page(path: Path, rig: LiveRig, tool: RealTool | None) -> None:
     """
-    Write the page.
+    Write the page, and the picture of the live estimate as ``force.png`` beside it.
 
     :param path: the HTML file.
     :param rig: the live run.
     :param tool: the real tool, where a recording was given.
     """
-    sections = [_rig(rig)]
+    picture = estimate_figure(rig.recording)
+    write(path.with_name('force.png'), picture)
+    sections = [_rig(rig, picture)]
     if tool is not None:
         sections.append(_tool(tool))
     page = Page(
@@ -70,7 +72,7 @@ def write_demo_page(path: Path, rig: LiveRig, tool: RealTool | None) -> None:
     write(path, html(page))
 
 
-def _rig(rig: LiveRig) -> Section:
+def _rig(rig: LiveRig, picture: bytes) -> Section:
     score = rig.score
     rows = (
         ('force RMSE', f'{score.rmse:.3f} N of {score.span:.1f} N'),
@@ -88,7 +90,7 @@ def _rig(rig: LiveRig) -> Section:
                 'load cell. The estimator saw the motors alone: their encoders and torques.'
             ),
             Picture(
-                estimate_figure(rig.recording),
+                picture,
                 'Estimated force over the load cell, the error, and the angles of inner pulleys',
                 'The estimates are those that the live node published.',
             ),

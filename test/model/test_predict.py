@@ -27,7 +27,8 @@ def test_a_stuck_pulley_lets_go_while_all_else_rests():
         predict(rig, motion, rig.driven, len(setpoints) - 1, tolerance=t) for t in (1e-7, 1e-9)
     )
     assert 40.0 < tight.contact_force.max() < 50.0
-    assert np.abs(loose.contact_force - tight.contact_force).max() < 0.01
+    # where it lets go a moment sooner the stiff wall feels it; to stay stuck would cost 28 N
+    assert np.abs(loose.contact_force - tight.contact_force).max() < 0.1
 
 
 def test_motion_that_begins_moving_is_followed_from_the_first_sample():
