@@ -147,11 +147,12 @@ class EstimatorNode(TendonNode):
         self._estimated += 1
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        # the stamp lets a bag be estimated from the very measurement that was the first here
+        response.message = f'begins anew after stamp {self._last_ns or 0} ns'
+        response.success = True
         self._observer.reset()
         self._together = Synchroniser(self._observer.needs)
         self._last_ns = None
-        response.success = True
-        response.message = 'begins anew with the next measurement'
         return response
 
 
