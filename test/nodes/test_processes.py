@@ -109,7 +109,10 @@ def test_a_bag_tells_how_it_was_made(bag):
     assert parameters[f'{NS}/simulator']['effects.cable_L3.pretension.scale'] == 1.0
     assert parameters[f'{NS}/estimator']['method'] == 'contact_angle'
     assert json.loads(metadata['versions']).keys() == {'tendon_ros', 'python', 'rmw'}
-    assert json.loads(metadata['dropped']) == {}
+    # how many are lost is up to the machine, but not one without being counted: stamps are even
+    dropped = json.loads(metadata['dropped']).get(f'{NS}/actuator/measured_js', 0)
+    recorded = read_recording(path)['actuator/pulley_M/position'].time
+    assert round((recorded[-1] - recorded[0]) / 0.002) + 1 == recorded.size + dropped
     assert 'positive' in metadata['sign_convention']
 
 
@@ -343,10 +346,10 @@ def test_three_nodes_in_one_process(start, client):
     force = client.hear('/together/body/measured_cf', WrenchStamped)
     params = ['--ros-args', '--params-file', config_path('nodes/rig.yaml')]
     one = start(
-        *('in_one', '--trajectory', 'step', '--step.duration', '1', '--approach', '0'),
+        *('in_one', '--trajectory', 'step', '--step.duration', '5', '--approach', '0'),
         *(*params, '-r', '__ns:=/together'),
     )
     assert one.result() == 0, one.said
     assert 'step: done after 1 runs' in one.said
-    assert len(force) > 50  # of 500; a busy machine gives less
+    assert len(force) > 50  # of 2500; on a busy machine the discovery alone takes seconds
     assert np.all(np.diff(stamps_of(force)) > 0)
