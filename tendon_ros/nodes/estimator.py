@@ -7,20 +7,20 @@ import sys
 
 from tendon_ros.estimate import METHODS
 from tendon_ros.nodes.launcher import Program, start
-from tendon_ros.nodes.settings import Setting
+from tendon_ros.nodes.settings import ENGINE, INSTRUMENT, Setting
 
 PROGRAM = Program(
     name='estimator',
     help='Estimate the operating force and the inner pulleys, a message for each measurement.',
     settings=(
-        Setting('instrument', 'paper_rig', 'instrument file, or name of an installed one'),
+        INSTRUMENT,
         Setting(
             'method',
             'contact_angle',
             '; '.join(f'{name}: {text}' for name, text in METHODS.items()),
             choices=tuple(METHODS),
         ),
-        Setting('engine', 'auto', 'how the physics runs', choices=('auto', 'compiled', 'plain')),
+        ENGINE,
     ),
     made_by='estimator_node:EstimatorNode',
 )

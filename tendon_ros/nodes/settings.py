@@ -62,6 +62,11 @@ class Setting:
         return ''
 
 
+#: settings that several nodes have
+INSTRUMENT = Setting('instrument', 'paper_rig', 'instrument file, or name of an installed one')
+ENGINE = Setting('engine', 'auto', 'how the physics runs', choices=('auto', 'compiled', 'plain'))
+
+
 def checked(setting: Setting, value: object) -> Value:
     """
     Return a value that is fit for a parameter.

@@ -6,18 +6,18 @@ from collections.abc import Sequence
 import sys
 
 from tendon_ros.nodes.launcher import Program, start
-from tendon_ros.nodes.settings import Setting
+from tendon_ros.nodes.settings import ENGINE, INSTRUMENT, Setting
 
 PROGRAM = Program(
     name='simulator',
     help='Simulate an instrument in real time: publish what its sensors measure, take commands.',
     settings=(
-        Setting('instrument', 'paper_rig', 'instrument file, or name of an installed one'),
+        INSTRUMENT,
         Setting('rate', 500.0, 'how often to publish', 'Hz', 1.0, 2000.0),
         Setting('seed', -1, "of the sensors' noise; -1 leaves all noise off", '', -1, 2**31 - 1),
         Setting('contact', True, 'whether the contacts of the instrument are in the way'),
         Setting('move_speed', 0.5, 'speed that move_jp reaches', 'rad/s', 1e-3, 100.0),
-        Setting('engine', 'auto', 'how the physics runs', choices=('auto', 'compiled', 'plain')),
+        ENGINE,
     ),
     made_by='simulator_node:SimulatorNode',
 )

@@ -7,7 +7,7 @@ import sys
 
 from tendon_ros.model.trajectory_choice import profiles, settings
 from tendon_ros.nodes.launcher import Program, start
-from tendon_ros.nodes.settings import Setting
+from tendon_ros.nodes.settings import INSTRUMENT, Setting
 
 
 def _profile_settings() -> Iterator[Setting]:
@@ -28,7 +28,7 @@ PROGRAM = Program(
     name='trajectory',
     help='Drive the motors of an instrument along a named profile or a CSV file.',
     settings=(
-        Setting('instrument', 'paper_rig', 'instrument file, or name of an installed one'),
+        INSTRUMENT,
         Setting('trajectory', 'paper_fig12', f'CSV file, or one of {", ".join(profiles())}'),
         Setting('rate', 500.0, 'how often to command', 'Hz', 1.0, 2000.0),
         Setting('repeats', 1, 'how often to run it; 0 for ever', '', 0, 10**6),
