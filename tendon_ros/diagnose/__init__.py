@@ -1,0 +1,1 @@
+"""Where the gap lies, which effect causes it, how far it shrinks once that is modelled."""

@@ -1,0 +1,89 @@
+"""What a diagnosis rests on, for the report: signals, the steps taken, what was weighed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """
+    One channel of one recording, measured and predicted, all of shape (n,) in ``unit``.
+
+    ``before`` is the prediction of the instrument file, ``after`` that with the accepted effects.
+    ``held_out`` marks samples that no fit has seen.
+    """
+
+    recording: str
+    channel: str
+    unit: str
+    time: FloatArray
+    measured: FloatArray
+    before: FloatArray
+    after: FloatArray
+    held_out: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Step:
+    """
+    One step of the explanation: what joined, and the gap after it, in noise standard deviations.
+
+    ``gap`` on fitted data, ``held_out`` on data that no fit has seen; the first step has no
+    effect: it is the instrument file with its parameters moved within their tolerances.
+    """
+
+    effect: str
+    place: str
+    gap: float
+    held_out: float
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The noise floor of a channel, in its unit, and how it was found."""
+
+    channel: str
+    unit: str
+    value: float
+    how: str
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A number of the instrument file that moved within its tolerance: factor or addition."""
+
+    place: str
+    quantity: str
+    value: float
+    ci95: tuple[float, float]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A candidate's shrink when it alone is added: part of the gap's square that it removes."""
+
+    effect: str
+    place: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Everything the report shows beside the verdict."""
+
+    instrument: str
+    recordings: tuple[str, ...]
+    traces: tuple[Trace, ...]
+    closed_loop: tuple[Trace, ...]
+    steps: tuple[Step, ...]
+    floors: tuple[Floor, ...]
+    moved: tuple[Moved, ...]
+    rivals: tuple[Rival, ...]
+    seconds: float

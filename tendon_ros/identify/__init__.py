@@ -1,0 +1,1 @@
+"""Rollouts along measured motion, residuals, fits with their intervals, and excitation."""
