@@ -158,7 +158,14 @@ class EffectUse:
 
 @dataclass(frozen=True)
 class Instrument:
-    """The whole network. Order of pulleys and motors is the order in which arrays are given."""
+    """
+    The whole network. Order of pulleys and motors is the order in which arrays are given.
+
+    ``tolerances``: how well a number is known, by place and key of the file, such as
+    ``pulley_3.inertia``, ``cable_L3.stiffness`` or ``pulley_3.gravity.torque``. One standard
+    deviation relative to the number, but in rad for an angle; infinite for what was guessed. What
+    is not listed is as good as such numbers usually are.
+    """
 
     name: str
     pulleys: tuple[Pulley, ...]
@@ -172,6 +179,7 @@ class Instrument:
     control_period: float = 1e-3  # [s]
     continuous_control: bool = False
     description: str = ''
+    tolerances: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def pulley_names(self) -> tuple[str, ...]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 import math
 
 from tendon_ros.base.errors import EffectError, InstrumentError
 from tendon_ros.base.recording import channel_name
+from tendon_ros.effects import find
 from tendon_ros.model.effect_use import checked_use
 from tendon_ros.model.instrument import (
     Contact,
@@ -26,12 +28,15 @@ from tendon_ros.model.instrument_schema import (
     ContactSection,
     ControlSection,
     CurveSection,
+    EffectSection,
     EncoderSection,
     InstrumentSection,
     LoopSection,
     MotorSection,
+    Section,
 )
 from tendon_ros.model.quantity import parsed
+from tendon_ros.model.tolerance import read_stated, Stated, without_tolerance
 
 #: unit of a contact's damping, by its law
 DAMPING_UNITS = {'hunt_crossley': 's/m', 'spring_damper': 'N*s/m'}
@@ -50,11 +55,14 @@ def built(file: InstrumentSection) -> Instrument:
     bare = Instrument(
         name=file.name,
         description=file.description,
-        pulleys=tuple(Pulley(n, p.inertia, p.damping) for n, p in file.pulleys.items()),
+        pulleys=tuple(
+            Pulley(n, p.inertia.value, p.damping.value) for n, p in file.pulleys.items()
+        ),
         motors=tuple(_motor(name, section) for name, section in file.motors.items()),
         loops=tuple(_loop(name, section) for name, section in file.loops.items()),
         couplings=tuple(
-            Coupling(n, dict(c.route), c.stiffness, c.damping) for n, c in file.couplings.items()
+            Coupling(n, dict(c.route), c.stiffness.value, c.damping.value)
+            for n, c in file.couplings.items()
         ),
         curves=tuple(curve(name, section) for name, section in file.curves.items()),
         contacts=tuple(_contact(name, section) for name, section in file.contacts.items()),
@@ -63,18 +71,20 @@ def built(file: InstrumentSection) -> Instrument:
         continuous_control=continuous,
     )
     effects: list[EffectUse] = []
+    tolerances = dict(_tolerances(file))
     for index, use in enumerate(file.effects):
-        field = f'effects.{index}'
+        plain = {name: without_tolerance(text) for name, text in use.parameters.items()}
         try:
-            effects.append(checked_use(bare, use.effect, use.place, use.parameters))
-        except EffectError as error:
-            raise InstrumentError(f'{field}: {error}') from None
+            effects.append(checked_use(bare, use.effect, use.place, plain))
+            tolerances.update(_effect_tolerances(use))
+        except (EffectError, ValueError) as error:
+            raise InstrumentError(f'effects.{index}: {error}') from None
     doubled = [pair for pair, n in Counter((e.effect, e.place) for e in effects).items() if n > 1]
     if doubled:
         raise InstrumentError(
             f'effects: {doubled[0][0]} at {doubled[0][1]} is given twice; keep one of the two'
         )
-    return Instrument(**{**vars(bare), 'effects': tuple(effects)})
+    return replace(bare, effects=tuple(effects), tolerances=tolerances)
 
 
 def curve(name: str, section: CurveSection) -> Curve:
@@ -132,8 +142,8 @@ def _loop(name: str, section: LoopSection) -> Loop:
         name=name,
         route=dict(section.route),
         curve=section.curve,
-        pretension=section.pretension,
-        damping=section.damping,
+        pretension=section.pretension.value,
+        damping=section.damping.value,
         torque_sign={pulley: float(sign) for pulley, sign in section.torque_sign.items()},
     )
 
@@ -143,9 +153,9 @@ def _contact(name: str, section: ContactSection) -> Contact:
         name=name,
         route=dict(section.route),
         arm=section.arm,
-        stiffness=section.stiffness,
+        stiffness=section.stiffness.value,
         damping=_late(f'contacts.{name}.damping', section.damping, DAMPING_UNITS[section.law]),
-        position=section.position,
+        position=section.position.value,
         law=section.law,
         enabled=section.enabled,
     )
@@ -160,6 +170,32 @@ def _late(field: str, text: str, unit: str) -> float:
     if value < 0.0:
         raise InstrumentError(f'{field}: {text!r} must be not negative')
     return value
+
+
+def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
+    places: list[tuple[str, Mapping[str, Section]]] = [
+        ('pulley', file.pulleys),
+        ('cable', file.loops),
+        ('coupling', file.couplings),
+        ('motor', file.motors),
+        ('contact', file.contacts),
+    ]
+    for kind, sections in places:
+        for name, section in sections.items():
+            alone = kind == 'contact' and len(sections) == 1
+            place = kind if alone else f'{kind}_{name}'
+            for key in type(section).model_fields:
+                stated = getattr(section, key)
+                if isinstance(stated, Stated) and stated.tolerance is not None:
+                    yield f'{place}.{key}', stated.tolerance
+
+
+def _effect_tolerances(use: EffectSection) -> Iterator[tuple[str, float]]:
+    units = {p.name: p.unit for p in find(use.effect).parameters}
+    for name, text in use.parameters.items():
+        tolerance = read_stated(text, units[name]).tolerance
+        if tolerance is not None:
+            yield f'{use.place}.{use.effect}.{name}', tolerance
 
 
 def _control(section: ControlSection) -> tuple[float, bool]:

@@ -41,9 +41,10 @@ def check_references(file: InstrumentSection) -> None:
         for pulley in loop.torque_sign:
             _known(f'loops.{name}.torque_sign', pulley, 'pulley of the route', loop.route)
         low, *_, high = file.curves[loop.curve].tension or (0.0, 0.0)
-        if not low <= loop.pretension <= high:
+        pretension = loop.pretension.value
+        if not low <= pretension <= high:
             raise InstrumentError(
-                f'loops.{name}.pretension: {loop.pretension:g} N is outside of the curve '
+                f'loops.{name}.pretension: {pretension:g} N is outside of the curve '
                 f'{loop.curve}, {low:g} to {high:g} N; choose a value inside'
             )
     _check_sensors(file)

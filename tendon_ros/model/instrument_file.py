@@ -83,7 +83,8 @@ def save_instrument(instrument: Instrument, path: Path) -> None:
     if _built(path, mapping_of(text, path)) != instrument:
         raise InstrumentError(
             f'{path}: {instrument.name} has something that a file cannot describe; give each '
-            'motor an encoder and a torque sensor, and name sensors as load_instrument does'
+            'motor an encoder and a torque sensor, name sensors as load_instrument does, and give '
+            'tolerances only for numbers that the file may give them'
         )
     try:
         path.write_text(text, encoding='utf-8')

@@ -11,11 +11,20 @@ from difflib import get_close_matches
 import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_validator,
+    PlainValidator,
+)
 from pydantic_core import PydanticCustomError
 
 from tendon_ros.base.errors import listed
 from tendon_ros.model.quantity import parsed
+from tendon_ros.model.tolerance import read_stated, read_tolerance, Stated
 
 
 def _quantity(unit: str, sign: str = '') -> BeforeValidator:
@@ -29,12 +38,33 @@ def _quantity(unit: str, sign: str = '') -> BeforeValidator:
 
     def read(text: object) -> float:
         value = text if isinstance(text, float) else parsed(text, unit)
-        holds = {'positive': value > 0, 'not negative': value >= 0, 'not zero': value != 0}
-        if not holds.get(sign, True):
-            raise ValueError(f'{text!r} must be {sign}')
+        _check_sign(text, value, sign)
         return value
 
     return BeforeValidator(read)
+
+
+def _stated(unit: str, sign: str = '') -> PlainValidator:
+    """
+    Return a validator that reads a quantity which may carry a tolerance.
+
+    :param unit: its SI unit.
+    :param sign: as for :func:`_quantity`.
+    :return: the validator.
+    """
+
+    def read(text: object) -> Stated:
+        stated = read_stated(text, unit)
+        _check_sign(text, stated.value, sign)
+        return stated
+
+    return PlainValidator(read)
+
+
+def _check_sign(text: object, value: float, sign: str) -> None:
+    holds = {'positive': value > 0, 'not negative': value >= 0, 'not zero': value != 0}
+    if not holds.get(sign, True):
+        raise ValueError(f'{text!r} must be {sign}')
 
 
 def _read_name(text: str) -> str:
@@ -73,6 +103,10 @@ Switch = Annotated[bool, Field(strict=False)]
 Radius = Annotated[float, _quantity('m', 'not zero')]
 Ratio = Annotated[float, _quantity('1', 'not zero')]
 Sign = Literal['1', '-1', '+1']
+Inertia = Annotated[Stated, _stated('kg*m^2', 'positive')]
+Damping = Annotated[Stated, _stated('N*m*s/rad', 'not negative')]
+#: a factor on numbers that stand elsewhere, of which only the tolerance can be given
+Factor = Annotated[Stated, PlainValidator(lambda text: Stated(1.0, read_tolerance(text)))]
 
 
 class Section(BaseModel):
@@ -117,8 +151,8 @@ class Section(BaseModel):
 class PulleySection(Section):
     """A body that turns."""
 
-    inertia: Annotated[float, _quantity('kg*m^2', 'positive')]
-    damping: Annotated[float, _quantity('N*m*s/rad', 'not negative')] = 0.0
+    inertia: Inertia
+    damping: Damping = Stated(0.0)
 
 
 class CurveSection(Section):
@@ -133,8 +167,9 @@ class LoopSection(Section):
 
     route: dict[Name, Radius]
     curve: Name
-    pretension: Annotated[float, _quantity('N', 'not negative')]
-    damping: Annotated[float, _quantity('N*s/m', 'not negative')] = 0.0
+    pretension: Annotated[Stated, _stated('N', 'not negative')]
+    damping: Annotated[Stated, _stated('N*s/m', 'not negative')] = Stated(0.0)
+    stiffness: Factor = Stated(1.0)  # on the tensions of its curve
     torque_sign: dict[Name, Sign] = {}
 
 
@@ -142,8 +177,8 @@ class CouplingSection(Section):
     """A torsion spring between pulleys."""
 
     route: dict[Name, Ratio]
-    stiffness: Annotated[float, _quantity('N*m/rad', 'positive')]
-    damping: Annotated[float, _quantity('N*m*s/rad', 'not negative')] = 0.0
+    stiffness: Annotated[Stated, _stated('N*m/rad', 'positive')]
+    damping: Damping = Stated(0.0)
 
 
 class ControllerSection(Section):
@@ -205,6 +240,7 @@ class MotorSection(Section):
     rotor_inertia: Annotated[float, _quantity('kg*m^2', 'not negative')] = 0.0
     torque_limit: Annotated[float, _quantity('N*m', 'positive')] = float('inf')
     speed_limit: Annotated[float, _quantity('rad/s', 'positive')] = float('inf')
+    torque_gain: Factor = Stated(1.0)  # on the torque that it reports
     position_limit: list[Annotated[float, _quantity('rad')]] = [float('-inf'), float('inf')]
     encoder: EncoderSection = EncoderSection()
     torque_sensor: TorqueSensorSection = TorqueSensorSection()
@@ -215,10 +251,10 @@ class ContactSection(Section):
 
     route: dict[Name, Ratio]
     arm: Annotated[float, _quantity('m', 'positive')]
-    stiffness: Annotated[float, _quantity('N/m', 'positive')]
+    stiffness: Annotated[Stated, _stated('N/m', 'positive')]
     law: Literal['hunt_crossley', 'spring_damper'] = 'hunt_crossley'
     damping: str = ''  # its unit depends on the law
-    position: Annotated[float, _quantity('rad')] = 0.0
+    position: Annotated[Stated, _stated('rad')] = Stated(0.0)
     enabled: Switch = True
 
 

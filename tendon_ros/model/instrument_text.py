@@ -8,9 +8,21 @@ from typing import Any
 import yaml
 
 from tendon_ros.effects import find
-from tendon_ros.model.instrument import Contact, Curve, EffectUse, Instrument, Loop, Motor, Sensor
+from tendon_ros.model.instrument import (
+    Contact,
+    contact_place,
+    Coupling,
+    Curve,
+    EffectUse,
+    Instrument,
+    Loop,
+    Motor,
+    Pulley,
+    Sensor,
+)
 from tendon_ros.model.instrument_build import DAMPING_UNITS
 from tendon_ros.model.quantity import column_text, readable_unit, written
+from tendon_ros.model.tolerance import written_stated, written_tolerance
 
 Document = dict[str, Any]
 
@@ -61,25 +73,16 @@ def _document(one: Instrument) -> Document:
     document: Document = {
         'name': one.name,
         'description': one.description,
-        'pulleys': {
-            p.name: {
-                'inertia': written(p.inertia, 'kg*m^2'),
-                **_unless(0.0, damping=(p.damping, 'N*m*s/rad')),
-            }
-            for p in one.pulleys
-        },
+        'pulleys': {p.name: _pulley(p, _Known(one, f'pulley_{p.name}')) for p in one.pulleys},
         'curves': {curve.name: _curve(curve) for curve in one.curves},
-        'loops': {loop.name: _loop(loop) for loop in one.loops},
+        'loops': {x.name: _loop(x, _Known(one, f'cable_{x.name}')) for x in one.loops},
         'couplings': {
-            c.name: {
-                'route': dict(c.route),
-                'stiffness': written(c.stiffness, 'N*m/rad'),
-                **_unless(0.0, damping=(c.damping, 'N*m*s/rad')),
-            }
-            for c in one.couplings
+            c.name: _coupling(c, _Known(one, f'coupling_{c.name}')) for c in one.couplings
         },
-        'motors': {m.name: _motor(m, sensors) for m in one.motors},
-        'contacts': {c.name: _contact(c) for c in one.contacts},
+        'motors': {m.name: _motor(m, sensors, _Known(one, f'motor_{m.name}')) for m in one.motors},
+        'contacts': {
+            c.name: _contact(c, _Known(one, contact_place(one, c))) for c in one.contacts
+        },
         'joint_sensors': {
             s.of: _encoder(s, 1.0)
             for s in one.sensors
@@ -92,9 +95,29 @@ def _document(one: Instrument) -> Document:
         },
         'load_cell': _load_cell(sensors['load_cell']) if 'load_cell' in sensors else {},
         'control': _control(one),
-        'effects': [_effect(use) for use in one.effects],
+        'effects': [_effect(use, _Known(one, use.place)) for use in one.effects],
     }
     return {key: value for key, value in document.items() if value}
+
+
+class _Known:
+    """Writes the numbers of a place with what is said of how well they are known."""
+
+    def __init__(self, one: Instrument, place: str) -> None:
+        self._tolerances = one.tolerances
+        self._place = place
+
+    def number(self, key: str, value: float, unit: str, default: float | None = None) -> Document:
+        """Return a quantity under its key; nothing for the default, unless more is said of it."""
+        tolerance = self._tolerances.get(f'{self._place}.{key}')
+        if value == default and tolerance is None:
+            return {}
+        return {key: written_stated(value, unit, tolerance)}
+
+    def factor(self, key: str) -> Document:
+        """Return the tolerance of a factor on numbers that stand elsewhere."""
+        tolerance = self._tolerances.get(f'{self._place}.{key}')
+        return {} if tolerance is None else {key: written_tolerance(tolerance)}
 
 
 def _unless(default: float, **values: tuple[float, str]) -> Document:
@@ -102,19 +125,35 @@ def _unless(default: float, **values: tuple[float, str]) -> Document:
     return {key: written(v, unit) for key, (v, unit) in values.items() if v != default}
 
 
-def _loop(loop: Loop) -> Document:
+def _pulley(pulley: Pulley, known: _Known) -> Document:
+    return {
+        **known.number('inertia', pulley.inertia, 'kg*m^2'),
+        **known.number('damping', pulley.damping, 'N*m*s/rad', 0.0),
+    }
+
+
+def _coupling(coupling: Coupling, known: _Known) -> Document:
+    return {
+        'route': dict(coupling.route),
+        **known.number('stiffness', coupling.stiffness, 'N*m/rad'),
+        **known.number('damping', coupling.damping, 'N*m*s/rad', 0.0),
+    }
+
+
+def _loop(loop: Loop, known: _Known) -> Document:
     document: Document = {
         'route': {pulley: written(radius, 'm') for pulley, radius in loop.route.items()},
         'curve': loop.curve,
-        'pretension': written(loop.pretension, 'N'),
-        **_unless(0.0, damping=(loop.damping, 'N*s/m')),
+        **known.number('pretension', loop.pretension, 'N'),
+        **known.number('damping', loop.damping, 'N*s/m', 0.0),
+        **known.factor('stiffness'),
     }
     if loop.torque_sign:
         document['torque_sign'] = {p: int(sign) for p, sign in loop.torque_sign.items()}
     return document
 
 
-def _motor(motor: Motor, sensors: dict[str, Sensor]) -> Document:
+def _motor(motor: Motor, sensors: dict[str, Sensor], known: _Known) -> Document:
     gains = motor.controller
     document: Document = {
         'pulley': motor.pulley,
@@ -131,6 +170,7 @@ def _motor(motor: Motor, sensors: dict[str, Sensor]) -> Document:
             torque_limit=(motor.torque_limit, 'N*m'),
             speed_limit=(motor.speed_limit, 'rad/s'),
         ),
+        **known.factor('torque_gain'),
     }
     if all(map(math.isfinite, motor.position_limit)):
         document['position_limit'] = [written(limit, 'rad') for limit in motor.position_limit]
@@ -156,17 +196,14 @@ def _encoder(sensor: Sensor, gear: float) -> Document:
     return document
 
 
-def _contact(contact: Contact) -> Document:
+def _contact(contact: Contact, known: _Known) -> Document:
     return {
         'route': dict(contact.route),
         'arm': written(contact.arm, 'm'),
-        'stiffness': written(contact.stiffness, 'N/m'),
+        **known.number('stiffness', contact.stiffness, 'N/m'),
         'law': contact.law,
-        **_unless(
-            0.0,
-            damping=(contact.damping, DAMPING_UNITS[contact.law]),
-            position=(contact.position, 'rad'),
-        ),
+        **_unless(0.0, damping=(contact.damping, DAMPING_UNITS[contact.law])),
+        **known.number('position', contact.position, 'rad', 0.0),
         **({} if contact.enabled else {'enabled': False}),
     }
 
@@ -187,15 +224,12 @@ def _control(one: Instrument) -> Document:
     return {'rate': 'continuous', **period} if one.continuous_control else period
 
 
-def _effect(use: EffectUse) -> Document:
+def _effect(use: EffectUse, known: _Known) -> Document:
     units = {p.name: p.unit for p in find(use.effect).parameters}
-    return {
-        'effect': use.effect,
-        'place': use.place,
-        'parameters': {name: _value(v, units.get(name, '')) for name, v in use.parameters.items()},
-    }
-
-
-def _value(value: float, unit: str) -> str | float:
-    """Return a quantity as text, or as a plain number where it has no unit."""
-    return value if unit in {'', '1'} else written(value, unit)
+    parameters: Document = {}
+    for name, value in use.parameters.items():
+        unit = units.get(name, '1')
+        [text] = known.number(f'{use.effect}.{name}', value, unit).values()
+        # a number without unit or tolerance is written as one, not as text
+        parameters[name] = value if unit == '1' and text == written(value, unit) else text
+    return {'effect': use.effect, 'place': use.place, 'parameters': parameters}

@@ -1,5 +1,6 @@
 """The page on instrument files names every key, and its example can be used."""
 
+import math
 from pathlib import Path
 import re
 
@@ -32,10 +33,15 @@ def test_every_installed_instrument_is_on_the_page():
 
 
 def test_example_is_sound(tmp_path):
-    [example] = re.findall(r'```yaml\n(.*?)```', PAGE, re.DOTALL)
+    example, tolerances = re.findall(r'```yaml\n(.*?)```', PAGE, re.DOTALL)
     (tmp_path / 'rigs').mkdir()
     (tmp_path / 'cables').symlink_to(config_path('cables'))
     (tmp_path / 'rigs' / 'small.yaml').write_text(example)
     small = load_instrument(tmp_path / 'rigs' / 'small.yaml')
     places = {'pulley_finger', 'cable_pull', 'motor_drive', 'encoder_drive', 'torque_drive'}
     assert places | {'load_cell', 'contact'} < {*small.places()}
+    (tmp_path / 'rigs' / 'variant.yaml').write_text('base: small.yaml\n' + tolerances)
+    said = load_instrument(tmp_path / 'rigs' / 'variant.yaml').tolerances
+    assert said['pulley_finger.inertia'] == 0.03
+    assert said['cable_pull.stiffness'] == math.inf
+    assert said['pulley_finger.gravity.phase'] == math.radians(2.0)
