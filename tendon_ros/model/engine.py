@@ -25,7 +25,7 @@ import numpy as np
 
 from tendon_ros import __version__
 from tendon_ros.base.errors import SimulationError
-from tendon_ros.model.joining import joined_source
+from tendon_ros.model.joining import decorated_source, joined_source
 from tendon_ros.model.structure import Structure
 
 
@@ -71,19 +71,47 @@ def engine_for(structure: Structure, kind: str = 'auto') -> Engine:
     :return: the engine.
     :raises SimulationError: where the compiled one is asked for and numba is missing.
     """
+    compiled = _is_compiled(kind)
+    return Engine(_stored(joined_source(structure, compiled=compiled)), compiled)
+
+
+@lru_cache(maxsize=8)
+def engine_of(file: Path, kind: str = 'auto') -> Engine:
+    """
+    Return the functions of a file, compiled where that is possible.
+
+    The file stands alone: functions without annotations over floats and arrays, constants, and
+    imports of ``math`` and numpy. It is compiled function by function when they are first called;
+    the machine code is kept under the hash of the text.
+
+    :param file: of Python functions; it is read, not imported.
+    :param kind: as for :func:`engine_for`.
+    :return: the engine; its ``module`` has the file's functions.
+    :raises SimulationError: where the compiled one is asked for and numba is missing.
+    """
+    compiled = _is_compiled(kind)
+    return Engine(_stored(decorated_source(file, compiled=compiled)), compiled)
+
+
+def _is_compiled(kind: str) -> bool:
+    """Return whether an engine of this kind is compiled here."""
     if kind == 'compiled' and not compiler_installed():
         raise SimulationError(
             "engine 'compiled' needs numba, which is not installed: pip install numba, "
             "or use engine 'plain'"
         )
-    compiled = kind == 'compiled' or (kind == 'auto' and compiler_installed())
+    return kind == 'compiled' or (kind == 'auto' and compiler_installed())
+
+
+def _stored(source: str) -> ModuleType:
+    """Return the module of a source text, which is kept under its hash."""
     title = f'"""tendon_ros {__version__} kernel, written by the engine: not to be edited."""'
-    source = f'{title}\n{joined_source(structure, compiled=compiled)}'
+    source = f'{title}\n{source}'
     digest = hashlib.sha256(source.encode()).hexdigest()[:20]
     path = _cache_folder() / f'kernel_{digest}.py'
     if not path.exists() or path.read_text(encoding='utf-8') != source:
         _write_atomically(path, source)
-    return Engine(module=_load(path), compiled=compiled)
+    return _load(path)
 
 
 def _cache_folder() -> Path:

@@ -119,6 +119,25 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
     return '\n'.join(lines + entries) + '\n'
 
 
+def decorated_source(file: Path, *, compiled: bool) -> str:
+    """
+    Return the text of a file that stands alone, its functions decorated for numba.
+
+    :param file: the file.
+    :param compiled: whether they are decorated.
+    :return: Python source.
+    """
+    tree = ast.parse(file.read_text(encoding='utf-8'))
+    lines = ['from numba import njit'] if compiled else []
+    for node in tree.body[1:] if ast.get_docstring(tree) else tree.body:
+        if isinstance(node, ast.FunctionDef):
+            if compiled:
+                lines.append('@njit(cache=True, nogil=True, error_model=\'numpy\')')
+            _strip(node)
+        lines.append(ast.unparse(node))
+    return '\n'.join(lines) + '\n'
+
+
 def _entry(function: ast.FunctionDef) -> str:
     """Return a function that takes arrays and hands their first elements to the one inside."""
     names = [argument.arg for argument in function.args.args]

@@ -1,0 +1,193 @@
+"""
+One case: three recordings of a rig that differs from its file, and a label of what differs.
+
+:func:`made` depends on seed, index and settings only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tendon_ros.base.errors import SimulationError
+from tendon_ros.base.recording import Recording
+from tendon_ros.blind import kernel as k
+from tendon_ros.blind.bench import nominal, nominal_rig
+from tendon_ros.blind.faults import chosen, Fault, rig_with
+from tendon_ros.blind.gap import gap_of, Ran
+from tendon_ros.blind.laws import KIN
+from tendon_ros.blind.motion import KINDS, setpoints
+from tendon_ros.blind.rig import Rig, run
+from tendon_ros.blind.sensing import CHANNEL_SETS, clean, recorded
+from tendon_ros.model.instrument import Instrument
+
+#: the strata in the order in which cases take them; single effects make half of all
+PATTERN = ('one', 'none', 'two_three', 'one', 'unknown', 'one', 'weak', 'withheld')
+STRATA = tuple(dict.fromkeys(PATTERN))
+
+#: a gap in noise floors: what is plain to see, and what is weak
+PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
+_TRIES = 40
+
+
+@dataclass(frozen=True)
+class Settings:
+    """
+    What cases are like.
+
+    ``bench``: ``bench`` or ``other``; ``nuisance``: one standard deviation of the relative error
+    of every inertia, stiffness and preload, three times that for damping; ``strata``,
+    ``channels``: those to take in turn.
+    """
+
+    bench: str = 'bench'
+    nuisance: float = 0.01
+    strata: tuple[str, ...] = PATTERN
+    channels: tuple[str, ...] = CHANNEL_SETS
+
+
+@dataclass(frozen=True)
+class Case:
+    """Recordings by kind, the label, and the file's instrument; ``withhold`` is for the run."""
+
+    name: str
+    recordings: Mapping[str, Recording]
+    label: Mapping[str, Any]
+    instrument: Instrument
+    withhold: tuple[str, ...] = ()
+
+
+def made(seed: int, index: int, settings: Settings | None = None) -> Case:
+    """
+    Return a case.
+
+    :param seed: of the whole benchmark.
+    :param index: of the case in it.
+    :param settings: what cases are like.
+    :return: recordings as a bag would give them, with the label.
+    """
+    settings = settings or Settings()
+    rng = np.random.default_rng([seed, index])
+    stratum = settings.strata[index % len(settings.strata)]
+    turn = index % len(settings.strata) + index // len(settings.strata)
+    channels = settings.channels[turn % len(settings.channels)]
+    instrument = nominal(settings.bench)
+    base = disturbed(nominal_rig(settings.bench), settings.nuisance, rng)
+    commands = {kind: setpoints(kind, rng) for kind in KINDS}
+    faults, ran, gaps = _faulty(
+        base, stratum, channels, commands, instrument, settings.nuisance, rng
+    )
+    recordings = {
+        kind: recorded(kind, one.values, one.out, commands[kind], instrument, rng)
+        for kind, one in ran.items()
+    }
+    label = {
+        'stratum': stratum,
+        'channels': channels,
+        'bench': settings.bench,
+        'nuisance': settings.nuisance,
+        'seed': seed,
+        'index': index,
+        'effects': [
+            {
+                'effect': fault.effect,
+                'place': fault.place,
+                'values': fault.values(base),
+                'recordings': list(fault.recordings),
+                'gap_over_floor': gap,
+            }
+            for fault, gap in zip(faults, gaps, strict=True)
+        ],
+    }
+    withhold: tuple[str, ...] = ()
+    if stratum == 'withheld':
+        withhold = KIN.get(faults[0].effect, (faults[0].effect,))
+    return Case(f'case_{index:04d}', recordings, label, instrument, withhold)
+
+
+def disturbed(rig: Rig, nuisance: float, rng: np.random.Generator) -> Rig:
+    """
+    Return a rig whose every number is a little off.
+
+    :param rig: as the file says.
+    :param nuisance: one standard deviation, relative.
+    :param rng: draws.
+    :return: a new rig.
+    """
+    one = rig.copy()
+
+    def off(by: float, size: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+        return 1.0 + by * nuisance * np.clip(rng.standard_normal(size), -3.0, 3.0)
+
+    one.pulleys[:, k.INERTIA] *= off(1.0, 5)
+    one.pulleys[:, k.DAMPING] *= off(3.0, 5)
+    one.loops[:, k.STIFFNESS] *= off(1.0, 3)
+    one.loops[:, k.PRELOAD] *= off(1.0, 3)
+    one.contact[k.CONTACT] *= off(1.0, 1)[0]
+    one.contact[k.CONTACT_DAMPING] *= off(3.0, 1)[0]
+    return one
+
+
+def ran_all(
+    base: Rig, faults: tuple[Fault, ...], channels: str, commands: Mapping[str, Any]
+) -> dict[str, Ran]:
+    """
+    Return the three runs of a rig with faults.
+
+    :param base: the rig without them.
+    :param faults: what is wrong.
+    :param channels: which sensors there are.
+    :param commands: set-points by kind.
+    :return: runs by kind.
+    """
+    result = {}
+    for kind in KINDS:
+        rig = rig_with(base, faults, kind)
+        closed = kind != 'free'
+        out = run(rig, commands[kind], closed=closed)
+        result[kind] = Ran(rig, out, clean(rig, out, channels, closed=closed), closed)
+    return result
+
+
+def _faulty(
+    base: Rig,
+    stratum: str,
+    channels: str,
+    commands: Mapping[str, Any],
+    instrument: Instrument,
+    nuisance: float,
+    rng: np.random.Generator,
+) -> tuple[tuple[Fault, ...], dict[str, Ran], list[float]]:
+    """Draw faults until each one's gap is in the window of its stratum."""
+    if stratum == 'none':
+        return (), ran_all(base, (), channels, commands), []
+    low, high = WEAK if stratum == 'weak' else PLAIN
+    faults = chosen(stratum, channels, rng)
+    for attempt in range(_TRIES):
+        if attempt and attempt % 6 == 0:
+            faults = chosen(stratum, channels, rng)
+        try:
+            ran = ran_all(base, faults, channels, commands)
+            gaps = [
+                gap_of(base, faults, n, ran, commands, channels, instrument)
+                for n in range(len(faults))
+            ]
+        except SimulationError:
+            faults = tuple(f.larger(0.5) for f in faults)
+            continue
+        if all(low <= gap <= high for gap in gaps):
+            return faults, ran, gaps
+        aim = float(np.exp(rng.uniform(np.log(1.15 * low), np.log(0.9 * min(high, 8 * low)))))
+        faults = tuple(
+            f if low <= gap <= high else f.larger(float(np.clip(aim / max(gap, 0.02), 0.1, 10.0)))
+            for f, gap in zip(faults, gaps, strict=True)
+        )
+        if any(f.out_of_bounds(nuisance) for f in faults):
+            faults = chosen(stratum, channels, rng)
+    raise SimulationError(
+        f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; '
+        'take another seed'
+    )

@@ -1,0 +1,116 @@
+"""Faults: a law at a place with a size, and a rig that has them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+
+from tendon_ros.blind.bench import LOOPS, MOTORS, PULLEYS
+from tendon_ros.blind.laws import Law, LAWS, Values
+from tendon_ros.blind.motion import KINDS
+from tendon_ros.blind.rig import Rig
+from tendon_ros.blind.unknowns import UNKNOWNS
+
+#: names of what stands at an index, by the first word of a place
+_NAMES: dict[str, Sequence[str]] = {
+    'pulley': PULLEYS,
+    'cable': LOOPS,
+    'motor': MOTORS,
+    'torque': MOTORS,
+    'encoder': ('M', 'L', '1', '2', '3'),
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A law at a place; ``recordings`` are those in which it acts."""
+
+    law: Law
+    place: str
+    size: float
+    seed: int
+    recordings: tuple[str, ...] = KINDS
+
+    @property
+    def effect(self) -> str:
+        """The effect's id."""
+        return self.law.effect
+
+    def out_of_bounds(self, nuisance: float) -> bool:
+        """Return whether the size is out of reason, or hardly more than a nuisance error."""
+        least = max(self.law.low / 8.0, 5.0 * self.law.spread * nuisance)
+        return not least <= self.size <= self.law.high
+
+    def larger(self, factor: float) -> Fault:
+        """Return the same fault, larger or smaller."""
+        return replace(self, size=self.size * factor)
+
+    def values(self, base: Rig) -> Values:
+        """Return the truth in the catalogue's words."""
+        return self.change(base.copy())
+
+    def change(self, rig: Rig) -> Values:
+        """Change a rig, and return the truth in the catalogue's words."""
+        kind, _, name = self.place.partition('_')
+        index = _NAMES[kind].index(name) if kind in _NAMES else 0
+        rng = np.random.default_rng(self.seed)
+        values = self.law.apply(rig, index, self.size, rng)
+        return {key: float(value) for key, value in values.items()}
+
+
+def rig_with(base: Rig, faults: Sequence[Fault], kind: str) -> Rig:
+    """
+    Return a rig with the faults that act in one kind of recording.
+
+    :param base: without them.
+    :param faults: what is wrong.
+    :param kind: of recording.
+    :return: a new rig.
+    """
+    rig = base.copy()
+    for fault in faults:
+        if kind in fault.recordings:
+            fault.change(rig)
+    return rig
+
+
+def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault, ...]:
+    """
+    Draw faults for a stratum: effect first, then place, each with the same chance.
+
+    :param stratum: one that has faults.
+    :param channels: which sensors there are.
+    :param rng: draws.
+    :return: one to three faults at different effects and places.
+    """
+    count = int(rng.integers(2, 4)) if stratum == 'two_three' else 1
+    laws = UNKNOWNS if stratum == 'unknown' else LAWS
+    faults: list[Fault] = []
+    while len(faults) < count:
+        effects = sorted({law.effect for law in laws if seen_places(law, channels)})
+        effect = str(rng.choice(effects))
+        pairs = [
+            (law, place)
+            for law in laws
+            if law.effect == effect
+            for place in seen_places(law, channels)
+        ]
+        law, place = pairs[int(rng.integers(len(pairs)))]
+        size = math.exp(rng.uniform(math.log(law.low), math.log(law.high)))
+        kinds = KINDS
+        if law.event and rng.random() < 0.6:
+            kinds = (str(rng.choice(KINDS)),)
+        if all(f.effect != effect and f.place != place for f in faults):
+            faults.append(Fault(law, place, size, int(rng.integers(2**31)), kinds))
+    return tuple(faults)
+
+
+def seen_places(law: Law, channels: str) -> tuple[str, ...]:
+    """Return the places of a law that these channels can show; sensors that are not there cannot."""
+    missing = {'joint': set(), 'force': {'encoder_1', 'encoder_2', 'encoder_3'}}.get(
+        channels, {'encoder_1', 'encoder_2', 'encoder_3', 'load_cell'}
+    )
+    return tuple(place for place in law.places if place not in missing)

@@ -1,0 +1,55 @@
+"""Set-points of the three recordings of a case: the paper's profile, free motion, and both."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from tendon_ros.blind.rig import BEFORE, FloatArray, TICK
+
+#: how long each recording lasts [s]
+LENGTHS = {'contact': 18.0, 'free': 14.0, 'mixed': 16.0}
+KINDS = tuple(LENGTHS)
+
+#: steps of the paper's profile: begin [s], angle [deg]
+_STEPS = ((1.0, 5.0), (5.0, 7.0), (9.0, 5.0), (13.0, 4.0))
+
+
+def setpoints(kind: str, rng: np.random.Generator) -> FloatArray:
+    """
+    Return the commanded angles of motors M and L, from before the recording to its end.
+
+    :param kind: ``contact``, ``free`` or ``mixed``.
+    :param rng: draws tones; the profile of ``contact`` is always the same.
+    :return: [rad], one row a tick, shape (n, 2).
+    """
+    time = np.arange(round((LENGTHS[kind] + BEFORE) / TICK)) * TICK - BEFORE
+    if kind == 'contact':
+        angle, last = np.zeros(time.size), 0.0
+        for begin, goal in _STEPS:
+            angle += math.radians(goal - last) * np.clip(time - begin, 0.0, 1.0)
+            last = goal
+        return np.stack([gaussian_filter1d(angle, 0.04 / TICK), np.zeros(time.size)], axis=1)
+    if kind == 'free':
+        M = _tones(time, rng, 4, (0.15, 1.5), lambda f: 0.12 * min(1.0, 0.9 / f))
+        L = _tones(time, rng, 4, (0.15, 1.5), lambda f: 0.08 * min(1.0, 0.6 / f))
+    else:
+        M = 0.06 * (1.0 - np.exp(-np.maximum(time, 0.0) ** 2 / 2.0))
+        M = M + _tones(time, rng, 1, (0.08, 0.16), lambda f: 0.04)
+        M = M + _tones(time, rng, 3, (0.25, 1.4), lambda f: 0.004 / f)
+        L = _tones(time, rng, 1, (0.12, 0.3), lambda f: 0.045)
+        L = L + _tones(time, rng, 1, (0.3, 0.55), lambda f: 0.018)
+    return np.stack([M, L], axis=1)
+
+
+def _tones(time, rng, count, band, amplitude):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+    """Return tones that fade in over a second."""
+    fade = 0.5 - 0.5 * np.cos(np.pi * np.clip(time, 0.0, 1.0))
+    total = np.zeros(time.size)
+    for f in rng.uniform(*band, count):
+        phase = rng.uniform(0.0, 2.0 * np.pi)
+        size = amplitude(f) * rng.uniform(0.7, 1.2)
+        total += size * np.sin(2.0 * np.pi * f * time + phase)
+    return fade * total

@@ -1,0 +1,65 @@
+"""``tendon blind``: the benchmark on rigs that are not the model, with labels kept apart."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+HELP = 'make, run and score the blind benchmark of the diagnosis'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare the arguments.
+
+    :param parser: of this verb.
+    """
+    tasks = parser.add_subparsers(dest='task', metavar='TASK', required=True)
+    make = tasks.add_parser('make', help='write cases, and their labels apart')
+    make.add_argument('--out', type=Path, required=True, metavar='DIR')
+    make.add_argument('--seed', type=int, required=True, help='below 1000: for development')
+    make.add_argument('--cases', type=int, required=True, metavar='K')
+    make.add_argument('--bench', choices=('bench', 'other'), default='bench')
+    make.add_argument('--strata', nargs='+', metavar='NAME', help='to take in turn')
+    make.add_argument('--channels', nargs='+', metavar='SET', help='motor, force, joint')
+    make.add_argument('--nuisance', type=float, default=0.01, help='one sigma, relative')
+    make.add_argument('--jobs', type=int, default=1, help='processes')
+
+
+def run(args: argparse.Namespace) -> None:
+    """
+    Do one of the tasks.
+
+    :param args: parsed arguments.
+    """
+    _make(args)
+
+
+def _make(args: argparse.Namespace) -> None:
+    from tendon_ros.base.errors import listed, RecordingError
+    from tendon_ros.blind.case import Settings, STRATA
+    from tendon_ros.blind.sensing import CHANNEL_SETS
+    from tendon_ros.blind.store import make, seed_kind
+    from tendon_ros.cli.progress import shown
+
+    plain = Settings()
+    strata, channels = args.strata or plain.strata, args.channels or plain.channels
+    for name, given, known in (
+        ('--strata', strata, STRATA),
+        ('--channels', channels, CHANNEL_SETS),
+    ):
+        for one in given:
+            if one not in known:
+                raise RecordingError(f'{name} {one}: does not exist; there are {listed(known)}')
+    for name, value, least in (
+        ('--cases', args.cases, 1),
+        ('--seed', args.seed, 0),
+        ('--jobs', args.jobs, 1),
+        ('--nuisance', args.nuisance, 0.0),
+    ):
+        if value < least:
+            raise RecordingError(f'{name} {value}: is too small; give {least} or more')
+    settings = Settings(args.bench, args.nuisance, tuple(strata), tuple(channels))
+    with shown('making cases') as progress:
+        make(args.out, args.seed, args.cases, settings, jobs=args.jobs, progress=progress)
+    print(f'{args.out}: {args.cases} cases of seed {args.seed} ({seed_kind(args.seed)})')
