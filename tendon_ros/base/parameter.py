@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -12,7 +13,10 @@ class Parameter:
 
     ``neutral`` changes nothing, or is NaN where the parameter only shapes what others switch on;
     then ``typical`` is what a fit starts from. ``low`` and ``high`` bound what is physically
-    possible. ``typical`` is also the size at which the effect is worth looking for.
+    possible. ``typical`` is also the size at which the effect is worth looking for. ``search``
+    says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
+    recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
+    ``level`` (of the motor's torque), ``share`` (all or nothing); or ``shape``: a shape in spite of its neutral value.
     """
 
     name: str
@@ -22,8 +26,14 @@ class Parameter:
     low: float
     high: float
     typical: float
+    search: Literal['', 'instant', 'duration', 'cycles', 'level', 'share', 'shape'] = ''
 
     @property
     def shapes_only(self) -> bool:
         """Whether the parameter has no neutral value of its own."""
         return self.neutral != self.neutral
+
+    @property
+    def is_shape(self) -> bool:
+        """Whether it shapes an effect rather than sizing it."""
+        return self.shapes_only or self.search in ('shape', 'level')

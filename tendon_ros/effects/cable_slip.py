@@ -56,6 +56,7 @@ EFFECT = Effect(
             low=0.0,
             high=1e6,
             typical=5.0,
+            search='instant',
         ),
     ),
     hook='elongation',

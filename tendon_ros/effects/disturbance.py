@@ -52,6 +52,7 @@ EFFECT = Effect(
             low=0.0,
             high=1e6,
             typical=5.0,
+            search='instant',
         ),
         Parameter(
             name='duration',
@@ -61,6 +62,7 @@ EFFECT = Effect(
             low=1e-3,
             high=1e6,
             typical=0.5,
+            search='duration',
         ),
     ),
     hook='torque',

@@ -58,6 +58,7 @@ EFFECT = Effect(
             low=0.0,
             high=0.5,
             typical=0.005,
+            search='shape',
         ),
     ),
     hook='budget',

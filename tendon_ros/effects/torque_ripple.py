@@ -52,6 +52,7 @@ EFFECT = Effect(
             low=0.5,
             high=1000.0,
             typical=12.0,
+            search='cycles',
         ),
         Parameter(
             name='phase',

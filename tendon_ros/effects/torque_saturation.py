@@ -38,6 +38,7 @@ EFFECT = Effect(
             low=1e-3,
             high=1000.0,
             typical=1.0,
+            search='level',
         ),
     ),
     modify=modify,

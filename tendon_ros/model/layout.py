@@ -151,6 +151,7 @@ class _Packer:
         n = len(order)
         for name in ('inertia', 'damping', 'breakaway'):
             _put(m, at[name.upper()], numbers[name][order])
+        _put(m, at['LASH'], 0.5 * numbers['lash'][order])
         width = at['WIDTH']
         for k, row in enumerate(at.loop_pulley):
             for e, i in enumerate(row):

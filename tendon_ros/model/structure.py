@@ -31,7 +31,7 @@ RING = 64
 #: sizes of the named places in each array, in terms of the sizes of the network
 PLACES: Mapping[str, Mapping[str, str]] = {
     'm': {
-        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'RADIUS': 'M*WIDTH', 'ARM': 'M*WIDTH',
+        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'LASH': 'N', 'RADIUS': 'M*WIDTH', 'ARM': 'M*WIDTH',
         'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M',
         'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
         'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
@@ -50,7 +50,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'TENSIONS': '2', 'WINDINGS': '2',
     },
     'w': {
-        'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'ACCELERATION': 'N',
+        'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N', 'ACCELERATION': 'N',
         'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M', 'TENSION': 'M',
         'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
         'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
@@ -68,7 +68,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     },
     'c': {
         'CLOCK': '1', 'STEP': '1', 'TICK': '1', 'COMMAND': 'U', 'SUM': 'U', 'LAST': 'U',
-        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'PAST': 'Q*RING',
+        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'DRUM': 'N', 'PAST': 'Q*RING',
     },
     'g': {'MODE': 'N', 'TOUCH': 'K', 'COUNT': '3'},
 }  # fmt: skip

@@ -30,6 +30,7 @@ class Numbers:
             'inertia': np.array([1e-3, 2e-3, 4e-2]),
             'damping': np.array([0.05, 0.02, 0.9]),
             'breakaway': np.array([0.0, 0.0, 0.0]),
+            'lash': np.array([0.0, 0.0, 0.0]),
             'radius': np.array([[0.03, -0.02, 0.0], [0.0, 0.03, -0.03], [-35.0, 0.0, 1.0]]),
             'pretension': np.array([5.0, 6.0, 0.0]),
             'scale': np.array([1.0, 1.0, 1.0]),

@@ -145,7 +145,7 @@ def evaluate(
 
     Prescribed pulleys must have been placed by :func:`prescribe`.
     """
-    wind(m, d, w, at)
+    wind(m, d, w, c, at)
     pull(m, d, w, at)
     touch(m, d, w, g, at)
     for i in range(N):

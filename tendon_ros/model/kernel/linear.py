@@ -11,9 +11,9 @@ from __future__ import annotations
 from tendon_ros.model.kernel.loops import smooth
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, ARM, BAND, BUDGET_L, BUDGET_W, CHI, CONTACT_ARM, CONTACT_PULLEY,
-    CONTACT_RATIO, DRIVE, FORCE_Q, FORCE_V, Floats, INERTIA, INTEGRAL, Ints, J_A, J_ANGLE,
-    J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS, J_RADIUS,
-    J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOOP_PULLEY, M, MATRIX, MODE,
+    CONTACT_RATIO, DRIVE, FOLLOW, FORCE_Q, FORCE_V, Floats, INERTIA, INTEGRAL, Ints, J_A,
+    J_ANGLE, J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS,
+    J_RADIUS, J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOOP_PULLEY, M, MATRIX, MODE,
     MOTOR_GAIN, MOTOR_PULLEY, N, OUTER, PUSH, RADIUS, REFERENCE, RIGHT, SIDE, SIGMA, SPAN,
     START, STATE_A, STATE_B, STATE_LOOP, STATE_PULLEY, STATE_S, STATE_T, STATE_Z, TENSION_D,
     TENSION_R, TORQUE_T, TORQUE_W, TOTAL_D, TURN, U, WIDTH,
@@ -29,7 +29,7 @@ def linearise(m: Floats, d: Ints, w: Floats) -> None:
         for e in range(WIDTH):
             n = WIDTH * k + e
             i = LOOP_PULLEY[n]
-            w[J_RADIUS + n] = m[RADIUS + n] * w[TURN + i]
+            w[J_RADIUS + n] = m[RADIUS + n] * w[TURN + i] * w[FOLLOW + i]
             w[J_ARM + n] = m[ARM + n] * w[TURN + i]
             w[J_GRIP + n] = w[SIDE + i] * w[BUDGET_L + i] * abs(m[RADIUS + n])
     for i in range(N):

@@ -8,11 +8,11 @@ two preloaded cables. Effects add to elongation and tension, and may let a radiu
 from __future__ import annotations
 
 from tendon_ros.model.kernel.structure import (
-    CURL, CURVE_BELOW, CURVE_CELLS, CURVE_OFFSET, CURVE_RATE, CURVE_START, DELTA, ELONGATIONS,
-    EPOCH, Floats, Ints, LOOP_DAMPING, LOOP_PULLEY, M, N, PLAY, PRELOAD, RADIUS, RATE, SCALE,
-    SHIFT, SHIFT_D, SLACK, STATE_A, STATE_B, STATE_RATE, STATE_S, STATE_T, STATE_Z, TENSION,
-    TENSIONS, TENSION_D, TENSION_R, TOTAL, TOTAL_D, TURN, WIDTH, WINDINGS, WOUND,
-    elongation_law, tension_law, winding_law,
+    CURL, CURVE_BELOW, CURVE_CELLS, CURVE_OFFSET, CURVE_RATE, CURVE_START, DELTA, DRUM,
+    ELONGATIONS, EPOCH, FOLLOW, Floats, Ints, LASH, LOOP_DAMPING, LOOP_PULLEY, M, N, PLAY,
+    PRELOAD, RADIUS, RATE, SCALE, SHIFT, SHIFT_D, SLACK, STATE_A, STATE_B, STATE_RATE,
+    STATE_S, STATE_T, STATE_Z, TENSION, TENSIONS, TENSION_D, TENSION_R, TOTAL, TOTAL_D, TURN,
+    WIDTH, WINDINGS, WOUND, elongation_law, tension_law, winding_law,
 )  # fmt: skip
 
 
@@ -69,12 +69,18 @@ def cable(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float]:
     return value + beyond * slope, slope * m[CURVE_RATE + k]
 
 
-def wind(m: Floats, d: Ints, w: Floats, at: int) -> None:
+def wind(m: Floats, d: Ints, w: Floats, c: Floats, at: int) -> None:
     """Set the angles that the cables see, and how they turn with the pulleys."""
     for i in range(N):
         w[WOUND + i] = w[at + i]
         w[TURN + i] = 1.0
         w[CURL + i] = 0.0
+        w[FOLLOW + i] = 1.0
+        if m[LASH + i] > 0.0:
+            behind = clipped(c[DRUM + i], w[at + i] - m[LASH + i], w[at + i] + m[LASH + i])
+            if behind == c[DRUM + i]:
+                w[FOLLOW + i] = 0.0
+            w[WOUND + i] = behind
     for a in range(d[WINDINGS + 1]):
         n = d[WINDINGS] + 4 * a
         i = d[n + 1]
@@ -93,7 +99,7 @@ def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
             i = LOOP_PULLEY[WIDTH * k + e]
             r = m[RADIUS + WIDTH * k + e]
             delta += r * w[WOUND + i]
-            rate += r * w[TURN + i] * w[at + N + i]
+            rate += r * w[FOLLOW + i] * w[TURN + i] * w[at + N + i]
         w[DELTA + k] = delta
         w[RATE + k] = rate
         w[SHIFT + k] = 0.0

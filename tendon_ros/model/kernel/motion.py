@@ -11,8 +11,8 @@ from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, DRY, EPOCH, F, FIRST, Floats, Ints, M, MODE, N, NEXT,
-    PERIOD, ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
+    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, DRUM, DRY, EPOCH, F, FIRST, Floats, Ints, LASH, M,
+    MODE, N, NEXT, PERIOD, ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
 
 LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
@@ -33,6 +33,13 @@ def longest(d: Ints, g: Ints, s: Floats) -> float:
         if d[DRY + i] == 1 and g[MODE + i] == 0:
             return LONGEST_STUCK
     return LONGEST
+
+
+def take_up(m: Floats, w: Floats, c: Floats) -> None:
+    """Let what lies behind a play follow where the pulley has reached an end of it."""
+    for i in range(N):
+        half = m[LASH + i]
+        c[DRUM + i] = clipped(c[DRUM + i], w[START + i] - half, w[START + i] + half)
 
 
 def advance(
@@ -105,6 +112,7 @@ def advance(
                 w[START + n] = w[NEXT + n]
             for n in range(2 * N, 2 * N + d[ACTIVE]):
                 w[START + n] = w[NEXT + n]
+            take_up(m, w, c)
             if steps > MOST_STEPS or not abs(w[START]) < 1e6:
                 return DIVERGED
     c[CLOCK] = end

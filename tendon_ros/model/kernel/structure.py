@@ -53,6 +53,7 @@ SENSOR_INDEX: Sequence[int]  # Q: pulley, motor, contact or entry of LOOP_PULLEY
 INERTIA: int
 DAMPING: int
 BREAKAWAY: int  # pre-sliding angle of the dry friction [rad]; 0: it sticks rigidly
+LASH: int  # half of the play that friction holds, between a pulley and its cables [rad]
 RADIUS: int  # M * WIDTH, signed: how an angle lengthens the loop [m]
 ARM: int  # M * WIDTH, signed: how its tension turns the pulley [m]
 PRELOAD: int  # elongation of each of a loop's two cables at rest [m]
@@ -119,6 +120,7 @@ INPUT: int  # N: torque of the motors on their pulleys [N m]
 WOUND: int  # N: angle that the cable sees
 TURN: int  # N: its derivative by the angle
 CURL: int  # N: and the second one
+FOLLOW: int  # 1 where the cables follow the pulley, 0 inside its play
 ACCELERATION: int  # N: of prescribed pulleys
 DELTA: int  # M: elongation
 RATE: int  # M: its rate
@@ -192,6 +194,7 @@ DRAWN: int  # tick of the first row of noise
 ROW: int  # rows written in this call
 ROOM: int  # rows that there is room for
 NOISY: int  # 1 where the sensors' noise is on
+DRUM: int  # N: angle of what lies behind a pulley's play [rad]
 PAST: int  # Q * RING
 MODE: int  # N: -1, 1 sliding, 0 stuck, 2 without dry friction or with pre-sliding
 TOUCH: int  # K

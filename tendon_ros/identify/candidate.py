@@ -1,0 +1,110 @@
+"""Candidates: every effect of the catalogue at every place where it can act, and where fits begin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from tendon_ros.base.parameter import Parameter
+from tendon_ros.effects import catalogue, find
+from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.numbers import place_index
+
+Values = Mapping[str, float]
+
+
+@dataclass(frozen=True, order=True)
+class Candidate:
+    """
+    An effect at a place; with ``only``, in the one segment of that name.
+
+    What happens at a time (a slip, a push) happens in one recording, or in each at its own.
+    """
+
+    effect: str
+    place: str
+    only: str = ''
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The effect's parameters."""
+        return find(self.effect).parameters
+
+    @property
+    def instants(self) -> tuple[Parameter, ...]:
+        """The parameters that are times of the recording."""
+        return tuple(p for p in self.parameters if p.search == 'instant')
+
+    def use(self, values: Values) -> EffectUse:
+        """
+        Return the effect with its parameters.
+
+        :param values: by name, SI units.
+        :return: the effect in use.
+        """
+        return EffectUse(self.effect, self.place, dict(values))
+
+    def acts_in(self, segment: str) -> bool:
+        """
+        Return whether it acts in a segment.
+
+        :param segment: its name.
+        :return: whether.
+        """
+        return self.only in ('', segment)
+
+
+def everyone(
+    instrument: Instrument, measured: Sequence[str], withheld: Sequence[str] = ()
+) -> tuple[Candidate, ...]:
+    """
+    Return all candidates of an instrument.
+
+    :param instrument: the network.
+    :param measured: channels that were measured; effects on sensors that were not are left out.
+    :param withheld: effects that are not to be considered, ``EFFECT`` or ``EFFECT@PLACE``.
+    :return: the candidates, in the catalogue's order.
+    """
+    silent = {s.name for s in instrument.sensors if s.channel not in measured}
+    found = []
+    for effect in catalogue().values():
+        for place in instrument.places():
+            kind, index = place_index(instrument, place)
+            if kind not in effect.kinds or place in silent:
+                continue
+            if kind == 'sensor' and instrument.sensors[index].kind not in effect.sensors:
+                continue
+            if effect.id in withheld or f'{effect.id}@{place}' in withheld:
+                continue
+            found.append(Candidate(effect.id, place))
+    return tuple(found)
+
+
+def starts(candidate: Candidate) -> list[dict[str, float]]:
+    """
+    Return where fits of a candidate begin: sizes as typical, shapes on a coarse grid.
+
+    :param candidate: the candidate; parameters that are searched for otherwise stay typical.
+    :return: values of all parameters.
+    """
+    axes = []
+    for p in candidate.parameters:
+        if p.search in ('instant', 'duration', 'cycles', 'level') or not p.is_shape:
+            axes.append((p.typical,))
+        elif p.search == 'share':
+            axes.append((p.low, p.high))
+        elif p.low > 0.0 or p.search == 'shape':
+            axes.append((p.typical, 0.2 * p.typical, 5.0 * p.typical))
+        else:
+            half = 0.25 * min(p.high - p.low, 2.0)
+            axes.append((p.typical, p.typical - half, p.typical + half))
+    names = [p.name for p in candidate.parameters]
+    return [
+        {
+            p.name: min(max(value, p.low), p.high)
+            for p, value in zip(candidate.parameters, values, strict=True)
+        }
+        for values in product(*axes)
+        if names
+    ]

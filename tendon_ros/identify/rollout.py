@@ -1,0 +1,213 @@
+"""
+Rollouts: the model driven along measured motion, compared with everything else that was measured.
+
+The controller is taken out: each residual then belongs to one equation, and nothing drifts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.errors import SimulationError, TendonError
+from tendon_ros.identify.segment import Segment
+from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.numbers import Numbers, place_index
+from tendon_ros.model.signals import Signals
+from tendon_ros.model.simulation import predict
+from tendon_ros.effects import find
+
+FloatArray = NDArray[np.float64]
+
+TOLERANCE = 1e-6  # [rad] a step; a hundredth of an encoder's count
+
+
+class Rollouts:
+    """
+    Predicts all channels of all segments for any set of effects.
+
+    :param instrument: the network; its own effects are always in force.
+    :param segments: what was measured.
+    :param jobs: threads that roll out at the same time.
+    """
+
+    def __init__(
+        self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1
+    ) -> None:
+        self.instrument = instrument
+        self.segments = tuple(segments)
+        plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
+        self._base = tuple(
+            replace(
+                instrument,
+                sensors=plain,
+                control_period=segment.period,
+                contacts=tuple(
+                    replace(c, enabled=c.name in segment.contacts) for c in instrument.contacts
+                ),
+            )
+            for segment in self.segments
+        )
+        self._columns = tuple(
+            [
+                [s.channel for s in instrument.sensors].index(m.sensor.channel)
+                for m in segment.measured
+            ]
+            for segment in self.segments
+        )
+        self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
+
+    @cached_property
+    def measured(self) -> tuple[FloatArray, ...]:
+        """What was measured, one array (channels, bins) a segment, NaN where nothing was."""
+        return tuple(
+            np.array([m.value for m in segment.measured]).reshape(-1, len(segment.time))
+            for segment in self.segments
+        )
+
+    def predicted(
+        self, uses: Sequence[Sequence[EffectUse]]
+    ) -> tuple[FloatArray, ...]:
+        """
+        Predict every channel.
+
+        :param uses: effects in force beside the instrument's own, for each segment.
+        :return: one array (channels, bins) a segment.
+        :raises SimulationError: where the model diverges.
+        """
+        return self.many([uses])[0]
+
+    def many(
+        self, models: Sequence[Sequence[Sequence[EffectUse]]]
+    ) -> list[tuple[FloatArray, ...]]:
+        """
+        Predict for several models at once.
+
+        :param models: for each, the effects by segment.
+        :return: predictions of each, as :meth:`predicted` gives them.
+        """
+        tasks = [
+            (n, uses) for model in models for n, uses in enumerate(model)
+        ]
+        if self._pool is None:
+            flat = [self._one(task) for task in tasks]
+        else:
+            flat = list(self._pool.map(self._one, tasks))
+        width = len(self.segments)
+        return [tuple(flat[k : k + width]) for k in range(0, len(flat), width)]
+
+    def _one(self, task: tuple[int, Sequence[EffectUse]]) -> FloatArray:
+        n, uses = task
+        segment = self.segments[n]
+        base = self._base[n]
+        instrument = replace(base, effects=(*base.effects, *uses))
+        numbers = modified(instrument)
+        bins = len(segment.time)
+        try:
+            rows = predict(
+                instrument,
+                true_motion(instrument, numbers, segment),
+                segment.prescribed,
+                bins - 1,
+                tolerance=TOLERANCE,
+                pose=segment.pose,
+            )
+        except SimulationError:
+            return np.full((len(segment.measured), bins), np.inf)
+        found = rows.reading[:, self._columns[n]].T
+        return _as_reported(instrument, numbers, segment, found)
+
+
+def modified(instrument: Instrument) -> Numbers:
+    """
+    Return the numbers of an instrument after all its effects have modified them.
+
+    :param instrument: with its effects.
+    :return: the numbers.
+    """
+    numbers = Numbers(instrument)
+    for use in instrument.effects:
+        effect = find(use.effect)
+        if effect.modify is not None:
+            numbers.kind, index = place_index(instrument, use.place)
+            effect.modify(numbers, index, **{**effect.neutral, **use.parameters})
+    return numbers
+
+
+def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> Signals:
+    """
+    Return the motion that the encoders of the driven pulleys saw, their own effects taken back.
+
+    :param instrument: with its effects.
+    :param numbers: after its effects.
+    :param segment: what was measured.
+    :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.
+    """
+    motion = segment.motion
+    value, slope = motion.value, motion.slope
+    start = 0.0
+    for row, pulley in enumerate(segment.prescribed):
+        for q, sensor in enumerate(instrument.sensors):
+            if sensor.kind != 'angle' or sensor.of != pulley:
+                continue
+            gain, offset = numbers['sensor_gain'][q], numbers['sensor_offset'][q]
+            late = numbers['sensor_delay'][q]
+            if gain != 1.0 or offset != 0.0 or late != 0.0:
+                value, slope = value.copy(), slope.copy()
+                if late != 0.0:
+                    grid = motion.step * np.arange(value.shape[1])
+                    value[row] = np.interp(grid + late, grid, value[row])
+                    slope[row] = np.interp(grid + late, grid, slope[row])
+                value[row] = (value[row] - offset) / gain
+                slope[row] = slope[row] / gain
+            break
+    return Signals(value, slope, start, motion.step)
+
+
+def _as_reported(
+    instrument: Instrument, numbers: Numbers, segment: Segment, found: FloatArray
+) -> FloatArray:
+    """
+    Return the predictions with the torque limits of the motors seen as the recording sees them.
+
+    A motor whose torque is cut off reports a torque that no motion tells; there the measured
+    torque stands for the prediction, less what the motion asks beyond the limit.
+    """
+    names = list(instrument.motor_names)
+    for row, measured in enumerate(segment.measured):
+        if measured.sensor.kind != 'motor_torque':
+            continue
+        j = names.index(measured.sensor.of)
+        limit = numbers['motor_limit'][j]
+        if limit >= 1e3:
+            continue
+        gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
+        asked = gain * found[row] + bias
+        given = np.clip(gain * measured.value + bias, -limit, limit)
+        found[row] = measured.value + (asked - given) / gain
+    return found
+
+
+def scoped(
+    uses: Sequence[EffectUse], segments: Sequence[Segment], scope: Mapping[int, str]
+) -> list[list[EffectUse]]:
+    """
+    Return effects for each segment: all of them, but those with a scope only where it says.
+
+    :param uses: the effects.
+    :param segments: the segments.
+    :param scope: the one segment's name, for effects by their number that act in one alone.
+    :return: the effects by segment.
+    """
+    return [
+        [use for k, use in enumerate(uses) if scope.get(k, segment.name) == segment.name]
+        for segment in segments
+    ]
+
+
+__all__ = ['Rollouts', 'TendonError', 'modified', 'scoped', 'true_motion']

@@ -1,0 +1,255 @@
+"""
+Screening: what each candidate could explain of what is left, tolerances and causes refitted.
+
+One rollout with the candidate at a typical size gives its signature. What tolerances and causes
+can imitate is projected out, and the size that fits best follows by least squares; a second
+rollout at that size corrects for friction and slack, which are far from linear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.effects import find
+from tendon_ros.identify.candidate import Candidate, starts
+from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
+
+Map = Callable[..., 'map[Proposal]']
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """
+    A candidate with the values from which a fit may begin.
+
+    ``gain``: by how much the squares fall, to first order; ``seen``: norm of the signature of
+    typical size, in noise deviations, and ``own``: the part of it that nothing else imitates.
+    """
+
+    candidate: Candidate
+    values: dict[str, float]
+    gain: float
+    seen: float
+    own: float
+
+
+class Screen:
+    """
+    Judges candidates against one fitted state.
+
+    :param problem: the data.
+    :param fit: the state.
+    """
+
+    def __init__(self, problem: Problem, fit: Fit) -> None:
+        self.problem = problem
+        self.fit = fit
+        axes = problem.axes(fit.model)
+        prior = np.array([axis.spread**-2 for axis in axes])
+        normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(axes))
+        self._inverse = np.linalg.pinv(normal, hermitian=True)
+
+    def proposals(self, candidate: Candidate) -> list[Proposal]:
+        """
+        Return what a candidate could explain, one proposal for each start.
+
+        :param candidate: the candidate.
+        :return: the proposals, best first; empty where it changes nothing that was measured.
+        """
+        found = []
+        for values in self._starts(candidate):
+            found += self._weighed(candidate, values)
+        return sorted(found, key=lambda p: -p.gain)
+
+    def _weighed(self, candidate: Candidate, values: dict[str, float]) -> list[Proposal]:
+        sized = [p for p in candidate.parameters if not p.is_shape]
+        model = self.fit.model
+        first = self._signature(candidate, values)
+        if first is None:
+            return []
+        size, gain, seen, own = first
+        if not sized:
+            return [Proposal(candidate, values, gain, seen, own)] if size > 0.0 else []
+        one_sided = all(p.low >= p.neutral for p in sized)
+        if one_sided and size <= 0.0:
+            return [Proposal(candidate, values, 0.0, seen, own)]
+        del model
+        scaled = _scaled(candidate, values, float(np.clip(size, -30.0, 30.0)))
+        second = self._signature(candidate, scaled)
+        if second is None:
+            return [Proposal(candidate, values, gain, seen, own)]
+        correction, gain, _, _ = second
+        scaled = _scaled(candidate, scaled, float(np.clip(correction, 0.1, 10.0)))
+        if correction <= 0.0:
+            gain = 0.0
+        return [Proposal(candidate, scaled, gain, seen, own)]
+
+    def _signature(
+        self, candidate: Candidate, values: dict[str, float]
+    ) -> tuple[float, float, float, float] | None:
+        """Return the best multiple of the signature, its gain, and norms whole and own."""
+        model = self.fit.model.joined(candidate, values)
+        change = self.problem.left(model) - self.fit.left
+        if not np.isfinite(change).all():
+            return None
+        square = float(change @ change)
+        if square < 1e-6:
+            return None
+        across = self.fit.slope.T @ change
+        own = square - float(across @ self._inverse @ across)
+        if own <= 1e-9 * square:
+            return 0.0, 0.0, np.sqrt(square), 0.0
+        pull = float(change @ self.fit.left) - float(
+            across @ self._inverse @ (self.fit.slope.T @ self.fit.left)
+        )
+        size = -pull / own
+        return size, pull * pull / own, np.sqrt(square), float(np.sqrt(own))
+
+    # -- starts that a coarse grid would miss
+
+    def _starts(self, candidate: Candidate) -> list[dict[str, float]]:
+        kinds = {p.search for p in candidate.parameters}
+        grid = starts(candidate)
+        if 'instant' in kinds:
+            return self._instants(candidate, grid[0])
+        if 'cycles' in kinds:
+            return self._cycles(candidate, grid[0])
+        if 'level' in kinds:
+            return self._levels(candidate, grid[0])
+        return grid
+
+    def _instants(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
+        """Find when an event began (and ended) from the signature of one that always lasts."""
+        [instant] = [p for p in candidate.parameters if p.search == 'instant']
+        lasting = [p for p in candidate.parameters if p.search == 'duration']
+        [size] = [p for p in candidate.parameters if not p.is_shape]
+        always = dict(values) | {instant.name: 0.0} | {p.name: 1e5 for p in lasting}
+        model = self.fit.model.joined(candidate, always)
+        change = self.problem.left(model) - self.fit.left
+        if not np.isfinite(change).all() or not change.any():
+            return []
+        sums = self._running_sums(change, candidate)
+        if sums is None:
+            return []
+        time, pull, square = sums
+        found = []
+        ends = len(time) - 1
+        starts_at = np.arange(0, ends, max(1, ends // 400))
+        best: list[tuple[float, int, int]] = []
+        for a in starts_at:
+            stop = np.array([ends]) if not lasting else np.arange(a + 1, ends + 1, 2)
+            p, s = pull[stop] - pull[a], square[stop] - square[a]
+            gain = np.where(s > 0.05 * square[-1] / max(ends, 1), p * p / np.maximum(s, 1e-12), 0)
+            k = int(np.argmax(gain))
+            best.append((float(gain[k]), int(a), int(stop[k])))
+        best.sort(reverse=True)
+        for _, a, b in best[:1]:
+            size_found = -(pull[b] - pull[a]) / max(square[b] - square[a], 1e-12)
+            one = dict(values) | {instant.name: float(time[a])}
+            one |= {p.name: max(float(time[b] - time[a]), p.low) for p in lasting}
+            grown = size.neutral + size_found * (size.typical - size.neutral)
+            one[size.name] = float(np.clip(grown, size.low, size.high))
+            if one[size.name] != size.neutral:
+                found.append(one)
+        return found
+
+    def _running_sums(
+        self, change: FloatArray, candidate: Candidate
+    ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+        """Return running sums over time of pull and square, over the segments where it acts."""
+        segments = self.problem.rollouts.segments
+        acting = [n for n, s in enumerate(segments) if candidate.acts_in(s.name)]
+        bins = max(len(segments[n].time) for n in acting)
+        period = segments[acting[0]].period
+        pull, square = np.zeros(bins + 1), np.zeros(bins + 1)
+        masks = self.problem.masks
+        changes = self.problem.groups(change)
+        lefts = self.problem.groups(self.fit.left)
+        for (n, c, own), (_, _, left) in zip(changes, lefts, strict=True):
+            if n not in acting:
+                continue
+            at = np.flatnonzero(masks[n][c]) + 1
+            np.add.at(pull, at, own * left)
+            np.add.at(square, at, own * own)
+        if square.sum() < 1e-6:
+            return None
+        return period * np.arange(bins + 1), np.cumsum(pull), np.cumsum(square)
+
+    def _cycles(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
+        """Find the period of a ripple from what is left of the motor's torque over its angle."""
+        instrument = self.problem.rollouts.instrument
+        motors = [m for m in instrument.motors if f'motor_{m.name}' == candidate.place]
+        if not motors:
+            return [values]
+        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, 400.0, 2.0)])
+        power = np.zeros(len(grid))
+        segments = self.problem.rollouts.segments
+        for n, c, left in self.problem.groups(self.fit.left):
+            sensor = segments[n].measured[c].sensor
+            if sensor.kind != 'motor_torque' or sensor.of != motors[0].name:
+                continue
+            row = segments[n].prescribed.index(motors[0].pulley)
+            angle = segments[n].motion.value[row][self.problem.masks[n][c]]
+            wave = np.exp(1j * np.outer(grid, angle[::2]))
+            wave -= wave.mean(1, keepdims=True)
+            part = left[::2] - left[::2].mean()
+            power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)
+        [name] = [p.name for p in candidate.parameters if p.search == 'cycles']
+        peaks = [
+            k for k in range(1, len(grid) - 1) if power[k - 1] <= power[k] >= power[k + 1]
+        ]
+        peaks.sort(key=lambda k: -power[k])
+        shapes = starts(candidate)
+        return [one | {name: float(grid[k])} for k in peaks[:3] for one in shapes]
+
+    def _levels(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
+        """Try limits below the largest torque that the motor reported."""
+        instrument = self.problem.rollouts.instrument
+        names = [m.name for m in instrument.motors if f'motor_{m.name}' == candidate.place]
+        largest = max(
+            (
+                float(np.nanmax(np.abs(m.value)))
+                for s in self.problem.rollouts.segments
+                for m in s.measured
+                if m.sensor.kind == 'motor_torque' and m.sensor.of in names
+            ),
+            default=0.0,
+        )
+        [name] = [p.name for p in candidate.parameters if p.search == 'level']
+        return [values | {name: part * largest} for part in (0.9, 0.7, 0.5) if largest > 0.0]
+
+
+def _scaled(candidate: Candidate, values: dict[str, float], size: float) -> dict[str, float]:
+    """Return values with sizes multiplied about their neutral, within bounds."""
+    found = dict(values)
+    for p in candidate.parameters:
+        if not p.is_shape:
+            grown = p.neutral + size * (values[p.name] - p.neutral)
+            found[p.name] = float(np.clip(grown, p.low, p.high))
+    return found
+
+
+def identifiers(candidates: Sequence[Candidate]) -> list[str]:
+    """
+    Return ``effect@place`` of candidates.
+
+    :param candidates: the candidates.
+    :return: texts.
+    """
+    return [f'{c.effect}@{c.place}' for c in candidates]
+
+
+def hook_of(candidate: Candidate) -> str:
+    """
+    Return where in the equations a candidate acts.
+
+    :param candidate: the candidate.
+    :return: the hook of its effect, or nothing.
+    """
+    return find(candidate.effect).hook

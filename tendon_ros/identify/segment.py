@@ -1,0 +1,205 @@
+"""
+Segments: a recording made ready to drive the model and to be compared with it.
+
+The motion of the driven pulleys becomes smooth signals; every other channel becomes means over
+bins of one length, with the noise of such a mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.model.instrument import Instrument, Sensor
+from tendon_ros.model.signals import Signals
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+BINS = 20_000  # bins of all recordings together: minutes of data are seen more coarsely
+SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
+SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
+
+
+@dataclass(frozen=True)
+class Measured:
+    """
+    One channel on the bins of its segment.
+
+    ``value``, shape (bins,), in the sensor's unit, NaN where nothing was measured; ``noise``,
+    shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean.
+    """
+
+    sensor: Sensor
+    value: FloatArray
+    noise: FloatArray
+
+
+@dataclass(frozen=True)
+class Segment:
+    """
+    One recording on uniform bins.
+
+    ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from the
+    recording's start. ``motion`` drives ``prescribed`` pulleys. ``contacts`` are those that were
+    there. ``pose`` is where the other pulleys began [rad].
+    """
+
+    name: str
+    period: float
+    time: FloatArray
+    prescribed: tuple[str, ...]
+    motion: Signals
+    measured: tuple[Measured, ...]
+    contacts: tuple[str, ...]
+    pose: Mapping[str, float]
+    start: float = 0.0
+
+    def with_noise(self, noise: Sequence[FloatArray]) -> Segment:
+        """
+        Return the same with another noise.
+
+        :param noise: of each channel, shape (bins,).
+        :return: the segment.
+        """
+        changed = (replace(m, noise=n) for m, n in zip(self.measured, noise, strict=True))
+        return replace(self, measured=tuple(changed))
+
+
+def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float:
+    """
+    Return the length of a bin that suits all recordings.
+
+    :param recordings: what was measured.
+    :param instrument: the network.
+    :return: [s], a few samples where sampling is fast, more than one where there is much data.
+    """
+    total = sum(r.end - r.start for r in recordings)
+    channel = motor_channels(instrument)[0]
+    sampling = max(float(np.median(np.diff(r[channel].time))) for r in recordings)
+    wished = max(SHORTEST_BIN, total / BINS, sampling)
+    return sampling * round(wished / sampling)
+
+
+def motor_channels(instrument: Instrument) -> tuple[str, ...]:
+    """
+    Return the channels of the motors' encoders, in the motors' order.
+
+    :param instrument: the network.
+    :return: channel names.
+    :raises RecordingError: where a driven pulley has no angle sensor.
+    """
+    found = []
+    for pulley in instrument.driven:
+        channels = [s.channel for s in instrument.sensors if s.kind == 'angle' and s.of == pulley]
+        if not channels:
+            raise RecordingError(
+                f'{instrument.name}: pulley {pulley} is driven but has no encoder; without it the '
+                'model cannot be driven with measured motion'
+            )
+        found.append(channels[0])
+    return tuple(found)
+
+
+def segment_of(instrument: Instrument, recording: Recording, period: float) -> Segment:
+    """
+    Return a recording as a segment; contacts and noise are settled by the caller.
+
+    :param instrument: the network.
+    :param recording: with the motors' encoders.
+    :param period: length of a bin [s].
+    :return: the segment, with every contact of the instrument and the sensors' noise alone.
+    :raises RecordingError: where a motor's encoder is missing.
+    """
+    encoders = motor_channels(instrument)
+    start = max(float(recording[name].time[0]) for name in encoders)
+    end = min(float(recording[name].time[-1]) for name in encoders)
+    bins = int((end - start) / period)
+    time = period * (np.arange(bins) + 0.5)
+    sensors = {s.channel: s for s in instrument.sensors}
+    rows = [
+        _motion(recording[name], sensors[name], start, period, bins) for name in encoders
+    ]
+    measured = []
+    for sensor in instrument.sensors:
+        if sensor.channel in encoders or sensor.channel not in recording:
+            continue
+        value, noise = _binned(recording[sensor.channel], sensor, start, period, bins)
+        measured.append(Measured(sensor, value, noise))
+    return Segment(
+        name=recording.name,
+        period=period,
+        time=time,
+        prescribed=instrument.driven,
+        motion=Signals.smooth(0.5 * period, period, np.array(rows)),
+        measured=tuple(measured),
+        contacts=tuple(c.name for c in instrument.contacts if c.enabled),
+        pose={},
+        start=start,
+    )
+
+
+def _motion(
+    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
+) -> FloatArray:
+    """Return the smoothed motion at the middles of the bins."""
+    sampling = float(np.median(np.diff(channel.time)))
+    grid = start + sampling * np.arange(round(bins * period / sampling) + 1)
+    nearest = np.clip(np.searchsorted(channel.time, grid), 1, len(channel.time) - 1)
+    gap = np.minimum(
+        np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
+    )
+    error = reading_error(channel, sensor)
+    angle = smoothed(channel.at(grid), gap < 1.5 * sampling, error)
+    middles = start + period * (np.arange(bins) + 0.5)
+    return np.interp(middles, grid, angle)
+
+
+def reading_error(channel: Channel, sensor: Sensor) -> float:
+    """
+    Return the standard deviation of one reading.
+
+    :param channel: what was read.
+    :param sensor: its resolution and noise, where the instrument file gives them.
+    :return: in the unit of the channel; from the smallest step between readings where the file is
+        silent.
+    """
+    if sensor.resolution > 0.0 or sensor.noise > 0.0:
+        return float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
+    steps = np.abs(np.diff(channel.value))
+    steps = steps[steps > 0.0]
+    if not steps.size:
+        return 0.0
+    return float(np.quantile(steps, 0.02) / np.sqrt(12.0))
+
+
+def _binned(
+    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the means over bins, NaN where empty, and the noise that they keep."""
+    index = np.floor((channel.time - start) / period).astype(np.int64)
+    inside = (index >= 0) & (index < bins)
+    count = np.bincount(index[inside], minlength=bins).astype(np.float64)
+    total = np.bincount(index[inside], weights=channel.value[inside], minlength=bins)
+    moment = np.bincount(
+        index[inside], weights=channel.time[inside] - start, minlength=bins
+    )
+    with np.errstate(invalid='ignore', divide='ignore'):
+        value = total / count
+        late = moment / count - period * (np.arange(bins) + 0.5)
+    known = count > 0
+    if known.sum() > 2:
+        # the mean belongs to the mean of the stamps, which need not be the bin's middle
+        slope = np.gradient(np.where(known, value, np.interp(
+            np.arange(bins), np.flatnonzero(known), value[known])), period)
+        value = np.where(known, value - slope * late, np.nan)
+    quantised = sensor.resolution / np.sqrt(12.0)
+    per_bin = max(1.0, float(np.median(count[known]))) if known.any() else 1.0
+    noise = float(np.hypot(quantised, sensor.noise / np.sqrt(per_bin)))
+    return value, np.full(bins, noise)
