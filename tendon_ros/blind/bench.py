@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.errors import InstrumentError, listed
-from tendon_ros.blind import kernel as k
+from tendon_ros.blind import columns as k
 from tendon_ros.blind.rig import FloatArray, Rig
 from tendon_ros.model.instrument import Controller, Curve, Instrument
 from tendon_ros.model.instrument_file import load_instrument
@@ -77,9 +77,7 @@ def _other(base: Instrument) -> Instrument:
         ),
         curves=(curve,),
         loops=tuple(
-            replace(
-                loop, route=routes[loop.name], curve='other', pretension=pretension[loop.name]
-            )
+            replace(loop, route=routes[loop.name], curve='other', pretension=pretension[loop.name])
             for loop in base.loops
         ),
         motors=motors,

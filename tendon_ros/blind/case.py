@@ -14,7 +14,7 @@ import numpy as np
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import Recording
-from tendon_ros.blind import kernel as k
+from tendon_ros.blind import columns as k
 from tendon_ros.blind.bench import nominal, nominal_rig
 from tendon_ros.blind.faults import chosen, Fault, rig_with
 from tendon_ros.blind.gap import gap_of, Ran
@@ -31,6 +31,7 @@ STRATA = tuple(dict.fromkeys(PATTERN))
 #: a gap in noise floors: what is plain to see, and what is weak
 PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
 _TRIES = 40
+_WHEEL = 0.03  # [m]: the motors' pulleys for which the motions are written
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,8 @@ def made(seed: int, index: int, settings: Settings | None = None) -> Case:
     channels = settings.channels[turn % len(settings.channels)]
     instrument = nominal(settings.bench)
     base = disturbed(nominal_rig(settings.bench), settings.nuisance, rng)
-    commands = {kind: setpoints(kind, rng) for kind in KINDS}
+    reach = _WHEEL / np.abs(base.routes).max(axis=0)[:2]
+    commands = {kind: setpoints(kind, reach, rng) for kind in KINDS}
     faults, ran, gaps = _faulty(
         base, stratum, channels, commands, instrument, settings.nuisance, rng
     )
@@ -188,6 +190,5 @@ def _faulty(
         if any(f.out_of_bounds(nuisance) for f in faults):
             faults = chosen(stratum, channels, rng)
     raise SimulationError(
-        f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; '
-        'take another seed'
+        f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; take another seed'
     )

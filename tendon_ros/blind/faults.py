@@ -9,7 +9,8 @@ import math
 import numpy as np
 
 from tendon_ros.blind.bench import LOOPS, MOTORS, PULLEYS
-from tendon_ros.blind.laws import Law, LAWS, Values
+from tendon_ros.blind.law import Law, Values
+from tendon_ros.blind.laws import LAWS
 from tendon_ros.blind.motion import KINDS
 from tendon_ros.blind.rig import Rig
 from tendon_ros.blind.unknowns import UNKNOWNS
@@ -109,8 +110,8 @@ def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault
 
 
 def seen_places(law: Law, channels: str) -> tuple[str, ...]:
-    """Return the places of a law that these channels can show; sensors that are not there cannot."""
-    missing = {'joint': set(), 'force': {'encoder_1', 'encoder_2', 'encoder_3'}}.get(
-        channels, {'encoder_1', 'encoder_2', 'encoder_3', 'load_cell'}
-    )
+    """Return the places of a law without those at sensors that are not there."""
+    missing = set() if channels == 'joint' else {'encoder_1', 'encoder_2', 'encoder_3'}
+    if channels == 'motor':
+        missing.add('load_cell')
     return tuple(place for place in law.places if place not in missing)

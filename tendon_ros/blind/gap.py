@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tendon_ros.blind import kernel as k
+from tendon_ros.blind import columns as k
 from tendon_ros.blind.faults import Fault, rig_with
 from tendon_ros.blind.rig import FloatArray, Rig, run, TICK
 from tendon_ros.blind.sensing import clean, floors

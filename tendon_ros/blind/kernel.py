@@ -1,135 +1,97 @@
 """
-The bench's own equations of motion, one millisecond after the other.
+The generator's own equations of motion, one tick of the controllers after the other.
 
-This file is read, compiled and run by :func:`tendon_ros.model.engine.engine_of`; it uses nothing
-but arithmetic and arrays. Rows of the tables are pulleys M, L, 1, 2, 3, loops m1, 12, L3 and
-motors M, L; their columns have the names below. Integration is semi-implicit Euler in steps of
-some ten microseconds, dampers taken at the end of a step.
+:mod:`tendon_ros.blind.rig` has this file joined with the two that it imports, compiled and run.
+Integration is semi-implicit Euler in steps of some ten microseconds, dampers taken at the end of
+a step.
 """
 
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
-# columns of the pulleys' table
-INERTIA, DAMPING, COULOMB, LOADED, STATIC, STRIBECK_SPEED, FORWARD, BACKWARD = range(8)
-BRISTLE, BRISTLE_DAMPING, ECCENTRIC, ECCENTRIC_PHASE, WEIGHT, WEIGHT_PHASE = range(8, 14)
-SPRING, SPRING_REST, PUSH, PUSH_START, PUSH_LENGTH, DRAG, CUBIC = range(14, 21)
-NOTCH, NOTCH_AT, NOTCH_WIDTH, STOP, STOP_AT, WARMING, WARMING_TIME = range(21, 28)
-FLATTENING, SIDED, PULLEY_COLUMNS = range(28, 31)
+from tendon_ros.blind.columns import (
+    AGE,
+    ANGLE,
+    ARM,
+    BRISTLE,
+    BRISTLE_DAMPING,
+    CABLE_DAMPING,
+    CROSSTALK,
+    CYCLES,
+    CYCLIC,
+    DAMPING,
+    DEAD,
+    DROP,
+    DROP_LENGTH,
+    DROP_START,
+    ECCENTRIC,
+    ECCENTRIC_PHASE,
+    EFFORT,
+    FAST,
+    FAST_TIME,
+    FLATTENING,
+    FORCE,
+    GAIN,
+    HELD,
+    INERTIA,
+    KD,
+    KI,
+    KP,
+    LAG,
+    LIMIT,
+    PRELOAD,
+    PRELOAD_STRETCH,
+    READING,
+    RESOLUTION,
+    SATURATION,
+    SCALE,
+    SIDED,
+    SLIP,
+    SLIP_LENGTH,
+    SLIP_START,
+    SLOW,
+    SLOW_TIME,
+    SPEED,
+    STIFFNESS,
+    WARMING,
+    WARMING_TIME,
+    ZERO,
+)
+from tendon_ros.blind.forces import (
+    aged,
+    contact_force,
+    friction_limit,
+    off_command,
+    other_torque,
+    pulse,
+    rounded_step,
+    Row,
+    softened,
+    tension,
+)
 
-# columns of the loops' table
-STIFFNESS, PRELOAD, PRELOAD_STRETCH, DEAD, FAST, FAST_TIME, SLOW, SLOW_TIME = range(8)
-SLIP, SLIP_START, SLIP_LENGTH, CABLE_DAMPING, LOOP_COLUMNS = range(8, 13)
-
-# columns of the motors' table
-KP, KI, KD, LIMIT, GAIN, BIAS, RIPPLE, RIPPLE_CYCLES, RIPPLE_PHASE, RIPPLE_SECOND = range(10)
-SATURATION, LAG, CROSSTALK, DROP, DROP_START, DROP_LENGTH = range(10, 16)
-ZERO, SCALE, RESOLUTION, AGE, CYCLIC, CYCLES, MOTOR_COLUMNS = range(16, 23)
-
-# numbers of the contact
-CONTACT, CONTACT_DAMPING, WALL, ARM, CLOSED, PAD, PAD_DEPTH, CONTACT_NUMBERS = range(8)
-
-# columns of what comes out, once a tick
-ANGLE, SPEED, EFFORT, FORCE, READING, OUT_COLUMNS = 0, 5, 10, 12, 13, 15
-
-
-def tension(table, spacing, stretch):
-    """Return the tension of one cable, from a table of even spacing; slack below zero."""
-    if stretch <= 0.0:
-        return 0.0
-    place = stretch / spacing
-    k = int(place)
-    last = table.shape[0] - 2
-    if k > last:
-        k = last
-    return table[k] + (place - k) * (table[k + 1] - table[k])
-
-
-def rounded_step(t, start, length):
-    """Return 0 before, 1 after, and half a cosine over the length."""
-    if t <= start:
-        return 0.0
-    if t >= start + length:
-        return 1.0
-    return 0.5 - 0.5 * math.cos(math.pi * (t - start) / length)
-
-
-def pulse(t, start, length):
-    """Return a pulse whose edges take a tenth of its length."""
-    edge = 0.1 * length
-    return rounded_step(t, start, edge) - rounded_step(t, start + length - edge, edge)
-
-
-def softened(stretch, half):
-    """Return what is left of an elongation beyond a play with rounded corners."""
-    if half <= 0.0:
-        return stretch
-    corner = 0.1 * half
-    over, under = stretch - half, -stretch - half
-    return 0.5 * (
-        over + math.sqrt(over * over + corner * corner)
-        - under - math.sqrt(under * under + corner * corner)
-    )  # fmt: skip
-
-
-def aged(past, newest, age):
-    """Return a reading that is some ticks old."""
-    place = newest - age
-    if place <= 0.0:
-        return past[0]
-    k = int(place)
-    if k >= newest:
-        return past[newest]
-    return past[k] + (place - k) * (past[k + 1] - past[k])
-
-
-def friction_limit(row, omega, bristle, load):
-    """Return the friction at steady sliding [N m]: exponential in speed, linear in load."""
-    limit = row[COULOMB] + row[LOADED] * load
-    if row[STATIC] > 0.0:
-        part = omega / row[STRIBECK_SPEED]
-        limit += row[STATIC] * math.exp(-part * part)
-    if row[FORWARD] + row[BACKWARD] > 0.0:
-        way = omega if abs(omega) > 1e-6 else bristle
-        limit += row[FORWARD] if way > 0.0 else row[BACKWARD]
-    return limit
-
-
-def other_torque(row, theta, omega, t):
-    """Return springs, weights, pushes and what no catalogue has [N m]."""
-    torque = -row[WEIGHT] * math.sin(theta - row[WEIGHT_PHASE])
-    torque -= row[SPRING] * (theta - row[SPRING_REST]) + row[CUBIC] * theta**3
-    torque -= row[DRAG] * omega * abs(omega)
-    if row[PUSH] != 0.0:
-        torque += row[PUSH] * pulse(t, row[PUSH_START], row[PUSH_LENGTH])
-    if row[NOTCH] != 0.0:
-        part = (theta - row[NOTCH_AT]) / row[NOTCH_WIDTH]
-        torque -= row[NOTCH] * part * math.exp(0.5 - 0.5 * part * part)
-    if row[STOP] > 0.0 and theta > row[STOP_AT]:
-        torque -= row[STOP] * (theta - row[STOP_AT])
-    return torque
-
-
-def contact_force(contact, theta, omega):
-    """Return the force at the tip [N]: spring and damper while they push, a soft pad before."""
-    depth = theta - contact[WALL]
-    if contact[CLOSED] < 0.5 or depth <= 0.0:
-        return 0.0
-    stretch = contact[ARM] * depth
-    if contact[PAD] > 0.0:
-        pad = contact[PAD_DEPTH]
-        soft = stretch if stretch < pad else pad
-        force = contact[CONTACT] * (stretch - soft + contact[PAD] * soft)
-    else:
-        force = contact[CONTACT] * stretch
-    return max(0.0, force + contact[CONTACT_DAMPING] * contact[ARM] * omega)
+Floats = NDArray[np.float64]
 
 
 def run(
-    step, substeps, start, setpoint, drive, routes, pulleys, loops, slips, yields, motors,
-    contact, table, spacing, out,
-):  # fmt: skip
+    step: float,
+    substeps: int,
+    start: float,
+    setpoint: Floats,
+    drive: Floats,
+    routes: Floats,
+    pulleys: Floats,
+    loops: Floats,
+    slips: Floats,
+    yields: Floats,
+    motors: Floats,
+    contact: Row,
+    table: Row,
+    spacing: float,
+    out: Floats,
+) -> int:
     """
     Run the rig tick by tick; with a drive its motors are moved, and their torque is what comes.
 
@@ -145,7 +107,7 @@ def run(
     wound, lever, torque, load = np.zeros(5), np.ones(5), np.zeros(5), np.zeros(5)
     fast, slow = np.zeros(3), np.zeros(3)
     pulled = np.zeros(slips.shape)
-    before = np.zeros(3)
+    before, behind = np.zeros(3), np.zeros(2)
     total, command, arrived, wanted, mean = (
         np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2),
     )  # fmt: skip
@@ -190,6 +152,10 @@ def run(
             for p in range(5):
                 torque[p], load[p] = 0.0, 0.0
                 wound[p] = theta[p]
+                if p < 2 and motors[p, HELD] > 0.0:
+                    half = 0.5 * motors[p, HELD]
+                    behind[p] = min(theta[p] + half, max(theta[p] - half, behind[p]))
+                    wound[p] = behind[p]
                 e = pulleys[p, ECCENTRIC]
                 if e != 0.0:
                     turn = theta[p] - pulleys[p, ECCENTRIC_PHASE]
@@ -291,12 +257,3 @@ def run(
         if not math.isfinite(theta[0] + theta[1] + theta[2] + theta[3] + theta[4]):
             return n + 1
     return 0
-
-
-def off_command(motor, theta):
-    """Return what a motor does besides what it is told: offset and cogging with a second wave."""
-    torque = motor[BIAS]
-    if motor[RIPPLE] != 0.0:
-        turn = motor[RIPPLE_CYCLES] * theta - motor[RIPPLE_PHASE]
-        torque += motor[RIPPLE] * (math.sin(turn) + motor[RIPPLE_SECOND] * math.sin(2.0 * turn))
-    return torque

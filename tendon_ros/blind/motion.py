@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 import math
 
 import numpy as np
@@ -14,38 +15,47 @@ LENGTHS = {'contact': 18.0, 'free': 14.0, 'mixed': 16.0}
 KINDS = tuple(LENGTHS)
 
 #: steps of the paper's profile: begin [s], angle [deg]
+_ROUNDING = 0.04  # [s] of its corners
 _STEPS = ((1.0, 5.0), (5.0, 7.0), (9.0, 5.0), (13.0, 4.0))
 
 
-def setpoints(kind: str, rng: np.random.Generator) -> FloatArray:
+def setpoints(kind: str, reach: FloatArray, rng: np.random.Generator) -> FloatArray:
     """
     Return the commanded angles of motors M and L, from before the recording to its end.
 
     :param kind: ``contact``, ``free`` or ``mixed``.
+    :param reach: factor on the angles of M and L, so that smaller wheels pull as much cable.
     :param rng: draws tones; the profile of ``contact`` is always the same.
     :return: [rad], one row a tick, shape (n, 2).
     """
-    time = np.arange(round((LENGTHS[kind] + BEFORE) / TICK)) * TICK - BEFORE
+    count = round((LENGTHS[kind] + BEFORE) / TICK)
+    time: FloatArray = np.arange(count, dtype=np.float64) * TICK - BEFORE
     if kind == 'contact':
-        angle, last = np.zeros(time.size), 0.0
+        M, L, last = np.zeros(time.size), np.zeros(time.size), 0.0
         for begin, goal in _STEPS:
-            angle += math.radians(goal - last) * np.clip(time - begin, 0.0, 1.0)
+            M += math.radians(goal - last) * np.clip(time - begin, 0.0, 1.0)
             last = goal
-        return np.stack([gaussian_filter1d(angle, 0.04 / TICK), np.zeros(time.size)], axis=1)
-    if kind == 'free':
+        M = gaussian_filter1d(M, _ROUNDING / TICK)
+    elif kind == 'free':
         M = _tones(time, rng, 4, (0.15, 1.5), lambda f: 0.12 * min(1.0, 0.9 / f))
         L = _tones(time, rng, 4, (0.15, 1.5), lambda f: 0.08 * min(1.0, 0.6 / f))
     else:
-        M = 0.06 * (1.0 - np.exp(-np.maximum(time, 0.0) ** 2 / 2.0))
+        M = 0.06 * (1.0 - np.exp(-0.5 * np.maximum(time, 0.0) ** 2))
         M = M + _tones(time, rng, 1, (0.08, 0.16), lambda f: 0.04)
         M = M + _tones(time, rng, 3, (0.25, 1.4), lambda f: 0.004 / f)
         L = _tones(time, rng, 1, (0.12, 0.3), lambda f: 0.045)
         L = L + _tones(time, rng, 1, (0.3, 0.55), lambda f: 0.018)
-    return np.stack([M, L], axis=1)
+    return np.stack([M, L], axis=1) * reach
 
 
-def _tones(time, rng, count, band, amplitude):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    """Return tones that fade in over a second."""
+def _tones(
+    time: FloatArray,
+    rng: np.random.Generator,
+    count: int,
+    band: tuple[float, float],
+    amplitude: Callable[[float], float],
+) -> FloatArray:
+    """Return tones of a band [Hz], about as large as their amplitude says, faded in."""
     fade = 0.5 - 0.5 * np.cos(np.pi * np.clip(time, 0.0, 1.0))
     total = np.zeros(time.size)
     for f in rng.uniform(*band, count):

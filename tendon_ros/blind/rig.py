@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import SimulationError
-from tendon_ros.blind import kernel as k
+from tendon_ros.blind import columns as k
 from tendon_ros.model.engine import engine_of
 
 FloatArray = NDArray[np.float64]
@@ -20,7 +20,8 @@ SUBSTEPS = 20  # integration steps in a tick
 BEFORE = 1.0
 
 _NO_DRIVE = np.zeros((0, 4))
-_FLOORS = Path(k.__file__)
+_HERE = Path(__file__).parent
+_FILES = tuple(_HERE / f'{part}.py' for part in ('columns', 'forces', 'kernel'))
 
 
 @dataclass
@@ -89,7 +90,7 @@ def run(
     contact = rig.contact.copy()
     contact[k.CLOSED] = float(closed)
     out = np.zeros((len(setpoint), k.OUT_COLUMNS))
-    fault = engine_of(_FLOORS).module.run(
+    fault = engine_of(_FILES).module.run(
         TICK / SUBSTEPS,
         SUBSTEPS,
         start,

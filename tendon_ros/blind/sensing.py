@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.blind import kernel as k
+from tendon_ros.blind import columns as k
 from tendon_ros.blind.bench import MOTORS, noise, resolution
 from tendon_ros.blind.rig import BEFORE, FloatArray, Rig, TICK
 from tendon_ros.model.instrument import Instrument
@@ -49,7 +49,8 @@ def _late(signal: FloatArray, delay: float) -> FloatArray:
     if delay == 0.0:
         return signal
     ticks = np.arange(signal.size)
-    return np.interp(ticks - delay / TICK, ticks, signal)
+    late: FloatArray = np.interp(ticks - delay / TICK, ticks, signal)
+    return late
 
 
 def clean(rig: Rig, out: FloatArray, channels: str, *, closed: bool) -> dict[str, FloatArray]:

@@ -127,9 +127,7 @@ def read_case(folder: Path, case: str) -> list[Recording]:
     :param case: its name.
     :return: in the order contact, free, mixed.
     """
-    return [
-        replace(read_recording(folder / 'cases' / case / kind), name=kind) for kind in KINDS
-    ]
+    return [replace(read_recording(folder / 'cases' / case / kind), name=kind) for kind in KINDS]
 
 
 def read_json(path: Path) -> Any:

@@ -1,15 +1,15 @@
 """
 Faults that no catalogue has: each at a place, none the special case of a known one.
 
-They are drawn and sized like the others; see :mod:`tendon_ros.blind.laws`.
+They are drawn and sized like the others; see :mod:`tendon_ros.blind.law`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from tendon_ros.blind import kernel as k
-from tendon_ros.blind.laws import at, dry, Law, sign, Values
+from tendon_ros.blind import columns as k
+from tendon_ros.blind.law import at, dry, Law, sign, Values
 from tendon_ros.blind.rig import Rig
 
 

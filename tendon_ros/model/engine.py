@@ -76,21 +76,21 @@ def engine_for(structure: Structure, kind: str = 'auto') -> Engine:
 
 
 @lru_cache(maxsize=8)
-def engine_of(file: Path, kind: str = 'auto') -> Engine:
+def engine_of(files: tuple[Path, ...], kind: str = 'auto') -> Engine:
     """
-    Return the functions of a file, compiled where that is possible.
+    Return the functions of some files, compiled where that is possible.
 
-    The file stands alone: functions without annotations over floats and arrays, constants, and
-    imports of ``math`` and numpy. It is compiled function by function when they are first called;
-    the machine code is kept under the hash of the text.
+    The files stand alone together: constants, and functions over floats and arrays that need
+    nothing but ``math`` and numpy. They are compiled when they are first called; the machine code
+    is kept under the hash of the text.
 
-    :param file: of Python functions; it is read, not imported.
+    :param files: of Python functions, in the order in which they are joined; read, not imported.
     :param kind: as for :func:`engine_for`.
-    :return: the engine; its ``module`` has the file's functions.
+    :return: the engine; its ``module`` has all functions.
     :raises SimulationError: where the compiled one is asked for and numba is missing.
     """
     compiled = _is_compiled(kind)
-    return Engine(_stored(decorated_source(file, compiled=compiled)), compiled)
+    return Engine(_stored(decorated_source(files, compiled=compiled)), compiled)
 
 
 def _is_compiled(kind: str) -> bool:

@@ -119,22 +119,27 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
     return '\n'.join(lines + entries) + '\n'
 
 
-def decorated_source(file: Path, *, compiled: bool) -> str:
+def decorated_source(files: Sequence[Path], *, compiled: bool) -> str:
     """
-    Return the text of a file that stands alone, its functions decorated for numba.
+    Return the text of files that stand alone together, their functions decorated for numba.
 
-    :param file: the file.
-    :param compiled: whether they are decorated.
+    :param files: in the order in which they are joined; what they import from each other is left
+        out.
+    :param compiled: whether functions are decorated.
     :return: Python source.
     """
-    tree = ast.parse(file.read_text(encoding='utf-8'))
     lines = ['from numba import njit'] if compiled else []
-    for node in tree.body[1:] if ast.get_docstring(tree) else tree.body:
-        if isinstance(node, ast.FunctionDef):
-            if compiled:
-                lines.append('@njit(cache=True, nogil=True, error_model=\'numpy\')')
-            _strip(node)
-        lines.append(ast.unparse(node))
+    for file in files:
+        for node in ast.parse(file.read_text(encoding='utf-8')).body:
+            if isinstance(node, ast.Expr):
+                continue
+            if isinstance(node, ast.ImportFrom) and (node.module or '').startswith('tendon_ros'):
+                continue
+            if isinstance(node, ast.FunctionDef):
+                if compiled:
+                    lines.append("@njit(cache=True, nogil=True, error_model='numpy')")
+                _strip(node)
+            lines.append(ast.unparse(node))
     return '\n'.join(lines) + '\n'
 
 
