@@ -1,0 +1,89 @@
+"""Where the stamps of a motor's position go wrong: gaps, clock jumps, leaps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.intake.motion import STILL
+from tendon_ros.diagnose.intake.step import sampling
+
+GAP = 8.0  # usual spacings
+SHORT_GAP = 0.03  # [s] that interpolation bridges whatever the sampling
+LONG_GAP = 0.5  # [s] beyond which the motion is unknown
+LEAP = 20.0  # times the steps around it: no motor moves like that between two samples
+AROUND = 5  # samples
+
+
+@dataclass(frozen=True)
+class Break:
+    """A place without motion to drive with: from the last good sample [s] to the next."""
+
+    start: float
+    end: float
+    cuts: bool  # too long to be bridged
+    words: str
+
+
+def breaks_of(channel: Channel) -> list[Break]:
+    """
+    Return the breaks in a motor's position.
+
+    :param channel: the position.
+    :return: in the order of time; gaps in which the motor stood still are none, unless long.
+    """
+    return sorted([*_gaps(channel), *_leaps(channel)], key=lambda found: found.start)
+
+
+def missing_share(channel: Channel) -> float:
+    """
+    Return how many single samples are missing.
+
+    :param channel: any channel.
+    :return: share of those that there should be, gaps not counted.
+    """
+    step = np.diff(channel.time)
+    usual = sampling(channel.time)
+    small = step[step <= max(GAP * usual, SHORT_GAP)]
+    lost = float(np.sum(np.rint(small / usual) - 1.0))
+    return max(0.0, lost / (lost + step.size))
+
+
+def _gaps(channel: Channel) -> Iterator[Break]:
+    time, value = channel.time, channel.value
+    usual = sampling(time)
+    for n in np.flatnonzero(np.diff(time) > max(GAP * usual, SHORT_GAP)).tolist():
+        gap = float(time[n + 1] - time[n])
+        moved = abs(float(value[n + 1] - value[n]))
+        if gap <= LONG_GAP and moved <= STILL:
+            continue
+        first = max(n - AROUND, 0)
+        pace = abs(float(value[n] - value[first])) / max(n - first, 1)  # [rad] a sample
+        words = f'{channel.name} has a gap of {gap:.3f} s at {time[n]:.3f} s'
+        if gap > LONG_GAP and moved <= 5.0 * pace and 20.0 * moved < pace * gap / usual:
+            words = (
+                f'the clock of {channel.name} jumps by {gap:.3f} s at {time[n]:.3f} s while the '
+                'motion goes on without a break'
+            )
+        yield Break(float(time[n]), float(time[n + 1]), gap > LONG_GAP, words)
+
+
+def _leaps(channel: Channel) -> Iterator[Break]:
+    time = channel.time
+    leap = np.abs(np.diff(channel.value))
+    usual = sampling(time)
+    beside = np.maximum(np.append(0.0, leap[:-1]), np.append(leap[1:], 0.0))
+    for n in np.flatnonzero(leap > np.maximum(STILL, LEAP * beside)).tolist():
+        if time[n + 1] - time[n] > GAP * usual or not AROUND <= n < leap.size - AROUND:
+            continue
+        left, right = leap[n - AROUND : n], leap[n + 1 : n + 1 + AROUND]
+        # in motion on both sides: between rests, a small servo may well go like that
+        if min(left.max(), right.max()) > 0.0 and leap[n] > LEAP * max(left.max(), right.max()):
+            words = (
+                f'{channel.name} leaps by {leap[n]:.3g} rad between two samples at {time[n]:.3f} '
+                's: the clock jumped back and samples were lost, or the encoder miscounted'
+            )
+            yield Break(float(time[n]), float(time[n + 1]), True, words)

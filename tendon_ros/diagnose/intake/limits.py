@@ -1,0 +1,60 @@
+"""Motor positions against the limits of the instrument file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+
+from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.intake.step import motor_positions, Sifted
+from tendon_ros.model.instrument import Instrument
+
+#: overshoot and an encoder's offset that are forgiven [share of the limits' width]
+FORGIVEN = 0.15
+#: times a limit: further off, a unit is more likely than another rig
+LARGE = 5.0
+
+
+def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
+    """
+    Leave out recordings in which a motor is where it cannot be.
+
+    :param recordings: with every motor's position.
+    :param instrument: with the limits of what may be commanded.
+    :return: the others, and sentences.
+    """
+    kept: list[Recording] = []
+    sentences: list[str] = []
+    for recording in recordings:
+        fault = _fault(recording, instrument)
+        if fault:
+            sentences.append(f'{recording.name}: {fault}')
+        else:
+            kept.append(recording)
+    return tuple(kept), sentences
+
+
+def _fault(recording: Recording, instrument: Instrument) -> str:
+    for motor, name in zip(instrument.motors, motor_positions(instrument), strict=True):
+        low, high = motor.position_limit
+        if not math.isfinite(high - low):
+            continue
+        margin = FORGIVEN * (high - low)
+        found = np.quantile(recording[name].value, [0.002, 0.998])
+        if low - margin <= found[0] and found[1] <= high + margin:
+            continue
+        degrees = np.deg2rad(found)
+        guess = (
+            '; in degrees it would fit: convert it to rad on import'
+            if np.abs(found).max() > LARGE * max(abs(low), abs(high))
+            and low - margin <= degrees[0]
+            and degrees[1] <= high + margin
+            else '; give the file of this rig, or correct its position_limit'
+        )
+        return (
+            f'{name} goes from {found[0]:.4g} to {found[1]:.4g} rad, beyond the position_limit '
+            f'{low:.4g} to {high:.4g} rad of motor {motor.name} in {instrument.name}{guess}'
+        )
+    return ''

@@ -1,0 +1,77 @@
+"""Recordings that show nothing: too short, or without motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from tendon_ros.base.recording import Channel, FloatArray, Recording
+from tendon_ros.diagnose.intake.step import motor_positions, shared_span, Sifted
+from tendon_ros.model.instrument import Instrument, Sensor
+
+SHORTEST = 1.0  # [s]
+FEWEST = 40  # samples of a motor's position
+STILL = 1e-3  # [rad]
+COUNTS = 5.0  # a motor that turns less than so many counts stands
+
+
+def moving(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
+    """
+    Leave out recordings that are too short or in which no motor moves.
+
+    :param recordings: with every motor's position.
+    :param instrument: the network.
+    :return: the others, and sentences.
+    """
+    kept: list[Recording] = []
+    sentences: list[str] = []
+    for recording in recordings:
+        fault = _fault(recording, instrument)
+        if fault:
+            sentences.append(f'{recording.name}: {fault}')
+        else:
+            kept.append(recording)
+    return tuple(kept), sentences
+
+
+def _fault(recording: Recording, instrument: Instrument) -> str:
+    names = motor_positions(instrument)
+    start, end = shared_span(recording, names)
+    fewest = min(recording[name].value.size for name in names)
+    if end - start < SHORTEST or fewest < FEWEST:
+        return (
+            f'too short: the motors are measured together for {max(end - start, 0.0):.2f} s, '
+            f'{fewest} samples; record at least {SHORTEST:g} s and {FEWEST} samples, better 15 s'
+        )
+    sensors = {s.channel: s for s in instrument.sensors}
+    if not any(turned(recording[name], sensors.get(name)) for name in names):
+        widest = max(travel(recording[name].value) for name in names)
+        return (
+            f'without motion: {", ".join(names)} stay within {widest:.2g} rad; move the motors '
+            'while recording'
+        )
+    return ''
+
+
+def travel(value: FloatArray) -> float:
+    """
+    Return how far a signal goes, single wild samples aside.
+
+    :param value: readings, shape (n,).
+    :return: in their unit.
+    """
+    return float(np.ptp(median_filter(value, size=5, mode='nearest')))
+
+
+def turned(channel: Channel, sensor: Sensor | None) -> bool:
+    """
+    Say whether a motor moved.
+
+    :param channel: its position.
+    :param sensor: its encoder, where the instrument describes one.
+    :return: whether it went further than its counts and noise tell.
+    """
+    count = 0.0 if sensor is None else max(sensor.resolution, 2.0 * sensor.noise)
+    return travel(channel.value) > max(STILL, COUNTS * count)

@@ -1,0 +1,73 @@
+"""What the checks have in common: their result, and channels by what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tendon_ros.base.recording import Channel, FloatArray, Recording
+from tendon_ros.estimate.channels import angle_channel
+from tendon_ros.model.instrument import Instrument, Sensor
+
+#: recordings that a check has left, and sentences on what it has not
+Sifted = tuple[tuple[Recording, ...], list[str]]
+
+
+def motor_positions(instrument: Instrument) -> tuple[str, ...]:
+    """
+    Return the channels that the model is driven with.
+
+    :param instrument: the network.
+    :return: names, in the order of the motors.
+    """
+    return tuple(angle_channel(instrument, pulley) for pulley in instrument.driven)
+
+
+def compared(recording: Recording, instrument: Instrument) -> tuple[Sensor, ...]:
+    """
+    Return the sensors whose channels can be compared with the model.
+
+    :param recording: what was measured.
+    :param instrument: the network.
+    :return: its sensors that the recording has, but for the motors' encoders.
+    """
+    driving = motor_positions(instrument)
+    return tuple(
+        s for s in instrument.sensors if s.channel in recording and s.channel not in driving
+    )
+
+
+def without(recording: Recording, names: Container[str]) -> Recording:
+    """
+    Return a recording that lacks some channels.
+
+    :param recording: what was measured.
+    :param names: the channels to leave out.
+    :return: a new recording.
+    """
+    kept = {name: c for name, c in recording.channels.items() if name not in names}
+    return replace(recording, channels=kept)
+
+
+def sampling(time: FloatArray) -> float:
+    """
+    Return the usual spacing of stamps.
+
+    :param time: [s], shape (n,), n > 1.
+    :return: [s].
+    """
+    return float(np.median(np.diff(time)))
+
+
+def shared_span(recording: Recording, names: Iterable[str]) -> tuple[float, float]:
+    """
+    Return the time during which several channels were all measured.
+
+    :param recording: what was measured.
+    :param names: its channels.
+    :return: begin and end [s]; the end comes first where there is no such time.
+    """
+    channels: Sequence[Channel] = [recording[name] for name in names]
+    return max(float(c.time[0]) for c in channels), min(float(c.time[-1]) for c in channels)
