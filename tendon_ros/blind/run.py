@@ -7,6 +7,7 @@ import importlib
 import json
 from pathlib import Path
 import time
+import traceback
 from typing import Any
 
 from tendon_ros.base.errors import TendonError
@@ -66,7 +67,9 @@ def _run_one(
         diagnosis = said if isinstance(said, Diagnosis) else said.diagnosis
         content['diagnosis'] = json.loads(diagnosis.model_dump_json(by_alias=True))
     except TendonError as error:
-        # a case that the diagnosis refuses counts as a wrong answer, not as the end of the run
+        # what the diagnosis refuses, or fails at, is a wrong answer and not the end of the run
         content['error'] = str(error)
+    except Exception:
+        content['error'] = traceback.format_exc()
     content['seconds'] = round(time.perf_counter() - began, 3)
     write_json(results / f'{case}.json', content)

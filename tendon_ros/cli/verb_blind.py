@@ -24,6 +24,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument('--channels', nargs='+', metavar='SET', help='motor, force, joint')
     make.add_argument('--nuisance', type=float, default=0.01, help='one sigma, relative')
     make.add_argument('--jobs', type=int, default=1, help='processes')
+    run_ = tasks.add_parser('run', help='diagnose every case, without its label')
+    run_.add_argument('folder', type=Path, metavar='DIR')
+    run_.add_argument('--out', type=Path, required=True, metavar='RESULTS')
+    run_.add_argument('--jobs', type=int, default=1, help='processes')
+    score = tasks.add_parser('score', help='compare the answers with the labels')
+    score.add_argument('folder', type=Path, metavar='DIR')
+    score.add_argument('results', type=Path, metavar='RESULTS')
+    score.add_argument('--out', type=Path, metavar='FOLDER', help='for the page; RESULTS/score')
 
 
 def run(args: argparse.Namespace) -> None:
@@ -32,7 +40,36 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: parsed arguments.
     """
-    _make(args)
+    {'make': _make, 'run': _run, 'score': _score}[args.task](args)
+
+
+def _run(args: argparse.Namespace) -> None:
+    from tendon_ros.blind.run import run as run_all
+    from tendon_ros.cli.progress import shown
+
+    _check('--jobs', args.jobs, 1)
+    with shown('diagnosing') as progress:
+        run_all(args.folder, args.out, jobs=args.jobs, progress=progress)
+    print(f'{args.out}: score with `tendon blind score {args.folder} {args.out}`')
+
+
+def _score(args: argparse.Namespace) -> None:
+    from tendon_ros.blind.score import score
+    from tendon_ros.report.blind_page import score_markdown, write_scoreboard
+
+    scored = score(args.folder, args.results)
+    folder = args.out or args.results / 'score'
+    write_scoreboard(scored, folder)
+    print(score_markdown(scored))
+    print(f'{folder}/scoreboard.html')
+
+
+def _check(name: str, value: float, least: float) -> None:
+    """Refuse a number that is too small."""
+    from tendon_ros.base.errors import RecordingError
+
+    if value < least:
+        raise RecordingError(f'{name} {value}: is too small; give {least} or more')
 
 
 def _make(args: argparse.Namespace) -> None:
@@ -51,14 +88,10 @@ def _make(args: argparse.Namespace) -> None:
         for one in given:
             if one not in known:
                 raise RecordingError(f'{name} {one}: does not exist; there are {listed(known)}')
-    for name, value, least in (
-        ('--cases', args.cases, 1),
-        ('--seed', args.seed, 0),
-        ('--jobs', args.jobs, 1),
-        ('--nuisance', args.nuisance, 0.0),
-    ):
-        if value < least:
-            raise RecordingError(f'{name} {value}: is too small; give {least} or more')
+    _check('--cases', args.cases, 1)
+    _check('--seed', args.seed, 0)
+    _check('--jobs', args.jobs, 1)
+    _check('--nuisance', args.nuisance, 0.0)
     settings = Settings(args.bench, args.nuisance, tuple(strata), tuple(channels))
     with shown('making cases') as progress:
         make(args.out, args.seed, args.cases, settings, jobs=args.jobs, progress=progress)
