@@ -70,6 +70,7 @@ def test_other_rigs_pass_without_complaint(name, recorded):
         ('gravity', 'pulley_3', {'torque': 1.0, 'phase': 0.8}),
         ('joint_spring', 'pulley_2', {'stiffness': 2.0, 'rest': 0.0}),
         ('torque_saturation', 'motor_M', {'limit': 1.0}),
+        ('contact_stiffness', 'contact', {'scale': 1e-3}),
         ('cable_slip', 'cable_L3', {'jump': 2e-3, 'time': 3.0}),
         ('disturbance', 'pulley_3', {'torque': 1.0, 'start': 2.0, 'duration': 0.5}),
     ],
