@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import Recording
 from tendon_ros.blind import columns as k
 from tendon_ros.blind.bench import nominal, nominal_rig
-from tendon_ros.blind.faults import chosen, Fault, rig_with
+from tendon_ros.blind.faults import chosen, Fault, renewed, rig_with
 from tendon_ros.blind.gap import gap_of, Ran
 from tendon_ros.blind.laws import KIN
 from tendon_ros.blind.motion import KINDS, setpoints
@@ -30,7 +31,8 @@ STRATA = tuple(dict.fromkeys(PATTERN))
 
 #: a gap in noise floors: what is plain to see, and what is weak
 PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
-_TRIES = 40
+_TRIES = 60
+_SAME = 6  # tries at one place
 _WHEEL = 0.03  # [m]: the motors' pulleys for which the motions are written
 
 
@@ -168,9 +170,7 @@ def _faulty(
         return (), ran_all(base, (), channels, commands), []
     low, high = WEAK if stratum == 'weak' else PLAIN
     faults = chosen(stratum, channels, rng)
-    for attempt in range(_TRIES):
-        if attempt and attempt % 6 == 0:
-            faults = chosen(stratum, channels, rng)
+    for attempt in range(1, _TRIES):
         try:
             ran = ran_all(base, faults, channels, commands)
             gaps = [
@@ -178,17 +178,27 @@ def _faulty(
                 for n in range(len(faults))
             ]
         except SimulationError:
-            faults = tuple(f.larger(0.5) for f in faults)
-            continue
+            gaps = [math.inf] * len(faults)
         if all(low <= gap <= high for gap in gaps):
             return faults, ran, gaps
-        aim = float(np.exp(rng.uniform(np.log(1.15 * low), np.log(0.9 * min(high, 8 * low)))))
         faults = tuple(
-            f if low <= gap <= high else f.larger(float(np.clip(aim / max(gap, 0.02), 0.1, 10.0)))
+            f if low <= gap <= high else f.larger(_factor(gap, low, high, rng))
             for f, gap in zip(faults, gaps, strict=True)
         )
-        if any(f.out_of_bounds(nuisance) for f in faults):
-            faults = chosen(stratum, channels, rng)
+        for n, fault in enumerate(faults):
+            late = attempt % _SAME == 0 and not low <= gaps[n] <= high
+            if late or fault.out_of_bounds(nuisance):
+                # the same effect elsewhere at first, so that subtle ones have their chance too
+                keep = attempt < _SAME
+                faults = renewed(faults, n, stratum, channels, rng, keep=keep)
     raise SimulationError(
         f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; take another seed'
     )
+
+
+def _factor(gap: float, low: float, high: float, rng: np.random.Generator) -> float:
+    """Return by what a fault has to grow, so that its gap comes into a window."""
+    if gap > 1e4:
+        return 0.5
+    aim = math.exp(rng.uniform(math.log(1.15 * low), math.log(0.9 * min(high, 8.0 * low))))
+    return min(10.0, max(0.1, aim / max(gap, 1e-3)))

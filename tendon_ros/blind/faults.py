@@ -10,7 +10,7 @@ import numpy as np
 
 from tendon_ros.blind.bench import LOOPS, MOTORS, PULLEYS
 from tendon_ros.blind.law import Law, Values
-from tendon_ros.blind.laws import LAWS
+from tendon_ros.blind.laws import KIN, LAWS
 from tendon_ros.blind.motion import KINDS
 from tendon_ros.blind.rig import Rig
 from tendon_ros.blind.unknowns import UNKNOWNS
@@ -85,28 +85,76 @@ def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault
     :param stratum: one that has faults.
     :param channels: which sensors there are.
     :param rng: draws.
-    :return: one to three faults at different effects and places.
+    :return: one to three faults that are not at one place the special case of each other.
     """
     count = int(rng.integers(2, 4)) if stratum == 'two_three' else 1
-    laws = UNKNOWNS if stratum == 'unknown' else LAWS
-    faults: list[Fault] = []
-    while len(faults) < count:
-        effects = sorted({law.effect for law in laws if seen_places(law, channels)})
-        effect = str(rng.choice(effects))
-        pairs = [
-            (law, place)
-            for law in laws
-            if law.effect == effect
-            for place in seen_places(law, channels)
-        ]
-        law, place = pairs[int(rng.integers(len(pairs)))]
-        size = math.exp(rng.uniform(math.log(law.low), math.log(law.high)))
-        kinds = KINDS
-        if law.event and rng.random() < 0.6:
-            kinds = (str(rng.choice(KINDS)),)
-        if all(f.effect != effect and f.place != place for f in faults):
-            faults.append(Fault(law, place, size, int(rng.integers(2**31)), kinds))
-    return tuple(faults)
+    while True:
+        faults = [_any(stratum, channels, rng) for _ in range(count)]
+        if not any(_same(a, b) for n, a in enumerate(faults) for b in faults[:n]):
+            return tuple(faults)
+
+
+def renewed(
+    faults: Sequence[Fault],
+    which: int,
+    stratum: str,
+    channels: str,
+    rng: np.random.Generator,
+    *,
+    keep: bool,
+) -> tuple[Fault, ...]:
+    """
+    Draw one of several faults anew.
+
+    :param faults: all of them.
+    :param which: the index of the one.
+    :param stratum: of the case.
+    :param channels: which sensors there are.
+    :param rng: draws.
+    :param keep: whether its effect stays, at another place and size.
+    :return: the faults with a new one in its place.
+    """
+    others = [fault for n, fault in enumerate(faults) if n != which]
+    while True:
+        if keep:
+            one = _drawn(faults[which].effect, _laws(stratum), channels, rng)
+        else:
+            one = _any(stratum, channels, rng)
+        if not any(_same(one, other) for other in others):
+            return (*faults[:which], one, *faults[which + 1 :])
+        keep = False
+
+
+def _laws(stratum: str) -> Sequence[Law]:
+    return UNKNOWNS if stratum == 'unknown' else LAWS
+
+
+def _any(stratum: str, channels: str, rng: np.random.Generator) -> Fault:
+    """Draw any fault of a stratum."""
+    laws = _laws(stratum)
+    effects = sorted({law.effect for law in laws if seen_places(law, channels)})
+    return _drawn(str(rng.choice(effects)), laws, channels, rng)
+
+
+def _drawn(effect: str, laws: Sequence[Law], channels: str, rng: np.random.Generator) -> Fault:
+    """Draw place, size and recordings of an effect."""
+    pairs = [
+        (law, place)
+        for law in laws
+        if law.effect == effect
+        for place in seen_places(law, channels)
+    ]
+    law, place = pairs[int(rng.integers(len(pairs)))]
+    size = math.exp(rng.uniform(math.log(law.low), math.log(law.high)))
+    once = law.event and rng.random() < 0.6
+    kinds = (str(rng.choice(KINDS)),) if once else KINDS
+    return Fault(law, place, size, int(rng.integers(2**31)), kinds)
+
+
+def _same(one: Fault, other: Fault) -> bool:
+    """Return whether two faults at one place are a matter of words."""
+    kin = (one.effect, *KIN.get(one.effect, ()))
+    return one.place == other.place and other.effect in kin
 
 
 def seen_places(law: Law, channels: str) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 import numpy as np
 
 from tendon_ros.blind.judge import KNOWN
@@ -75,7 +76,6 @@ def calibration_figure(bins: Sequence[Bin], error: float) -> Figure:
     top.set_xlim(0.0, 1.0)
     top.set_ylim(-0.02, 1.02)
     low.bar(stated, [b.true.of for b in bins], width=0.06, color=BLUE)
-    low.set_yscale('log')
     low.set_ylabel('causes')
     low.set_xlabel('stated probability')
     return figure
@@ -101,6 +101,9 @@ def shrink_figure(score: Score) -> Figure:
     axes.axvline(AIM, color=FAINT, linewidth=1.0, linestyle=(0, (4, 3)))
     level(axes, 0.5, 'median')
     axes.set_xscale('log')
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FormatStrFormatter('%g'))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel('gap after the causes, in noise floors')
     axes.set_ylabel('part of the cases')
     axes.set_ylim(0.0, 1.02)
