@@ -25,3 +25,31 @@ def shown(what: str) -> Iterator[Callable[[float], None]]:
             bars.update(task, completed=done)
 
         yield update
+
+
+@contextmanager
+def told() -> Iterator[Callable[[str, float], None]]:
+    """
+    Show the progress of a task that says what it is doing.
+
+    :return: a function to call with what is being done and the part that is done, 0 to 1.
+    """
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True, highlight=False)
+    columns = (TextColumn('{task.description}'), BarColumn(), TimeElapsedColumn())
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bars:
+        task = bars.add_task('starting', total=1.0)
+        last = ''
+
+        def report(what: str, done: float) -> None:
+            nonlocal last
+            bars.update(task, description=what, completed=done)
+            if not console.is_terminal and what != last:
+                console.print(f'{done:4.0%} {what}')
+            last = what
+
+        yield report

@@ -58,11 +58,13 @@ class Candidate(_Frozen):
 
 class Shrink(_Frozen):
     """
-    What one cause is worth on held-out data, as RMSE in noise standard deviations.
+    What one cause is worth on held-out data: RMSE of the channel in which it shows most.
 
     ``before``: no cause; ``without_this``: all others refitted; ``after``: all of them.
     """
 
+    channel: str
+    unit: str
     before: float
     without_this: float
     after: float

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import catalogue, find
 from tendon_ros.model.instrument import EffectUse, Instrument
@@ -35,6 +36,16 @@ class Candidate:
     def instants(self) -> tuple[Parameter, ...]:
         """The parameters that are times of the recording."""
         return tuple(p for p in self.parameters if p.search == 'instant')
+
+    @property
+    def scales(self) -> bool:
+        """Whether any parameter is a size."""
+        return any(not p.is_shape for p in self.parameters)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether its sizes can only grow from their neutral values."""
+        return all(p.low >= p.neutral for p in self.parameters if not p.is_shape)
 
     def use(self, values: Values) -> EffectUse:
         """
@@ -81,6 +92,23 @@ def everyone(
     return tuple(found)
 
 
+def check_withheld(instrument: Instrument, withheld: Sequence[str]) -> None:
+    """
+    Refuse to withhold what does not exist: a typing error would silently change the result.
+
+    :param instrument: the network.
+    :param withheld: ``EFFECT`` or ``EFFECT@PLACE``.
+    :raises EffectError: on an unknown effect, place, or a place where it cannot act.
+    """
+    for text in withheld:
+        name, _, place = text.partition('@')
+        effect = find(name)
+        if place and place_index(instrument, place)[0] not in effect.kinds:
+            raise EffectError(
+                f'--withhold {text}: {name} cannot act there; it acts at {listed(effect.kinds)}'
+            )
+
+
 def starts(candidate: Candidate) -> list[dict[str, float]]:
     """
     Return where fits of a candidate begin: sizes as typical, shapes on a coarse grid.
@@ -88,7 +116,7 @@ def starts(candidate: Candidate) -> list[dict[str, float]]:
     :param candidate: the candidate; parameters that are searched for otherwise stay typical.
     :return: values of all parameters.
     """
-    axes = []
+    axes: list[tuple[float, ...]] = []
     for p in candidate.parameters:
         if p.search in ('instant', 'duration', 'cycles', 'level') or not p.is_shape:
             axes.append((p.typical,))
@@ -97,8 +125,8 @@ def starts(candidate: Candidate) -> list[dict[str, float]]:
         elif p.low > 0.0 or p.search == 'shape':
             axes.append((p.typical, 0.2 * p.typical, 5.0 * p.typical))
         else:
-            half = 0.25 * min(p.high - p.low, 2.0)
-            axes.append((p.typical, p.typical - half, p.typical + half))
+            middle, half = 0.5 * (p.low + p.high), 0.5 * min(0.5 * (p.high - p.low), 1.6)
+            axes.append((middle, middle - half, middle + half))
     names = [p.name for p in candidate.parameters]
     return [
         {

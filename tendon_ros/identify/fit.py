@@ -24,6 +24,9 @@ from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
 
+NEIGHBOURS = 5  # bins between which noise is a difference and motion is not
+SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
+
 #: dry friction builds up over a fraction of a degree in every bearing that was ever measured
 BRISTLE = Axis('angle', 'rad', 1e-6, 0.05, 1e-3, math.log(4.0), log=True, spread=1.0)
 
@@ -92,6 +95,26 @@ def _dry_places(causes: Sequence[Candidate]) -> list[str]:
     return sorted(dry - own)
 
 
+def bristles(model: Model) -> list[EffectUse]:
+    """
+    Return the effects that let dry friction build up over an angle.
+
+    :param model: the model.
+    :return: one effect for each pulley with dry friction.
+    """
+    return [
+        EffectUse('presliding_friction', place, {'torque': 0.0, 'angle': BRISTLE.value(z)})
+        for place, z in model.bristle.items()
+    ]
+
+
+def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:
+    """Return when something suddenly changes."""
+    begun = [values[p.name] for p in cause.instants]
+    lasts = [values[p.name] for p in cause.parameters if p.search == 'duration']
+    return begun + [a + b for a in begun for b in lasts]
+
+
 @dataclass(frozen=True)
 class Fit:
     """
@@ -135,6 +158,11 @@ class Problem:
             for s in self._segments
         )
 
+        times = [np.broadcast_to(s.time, m.shape)[m] for s, m in zip(
+            self._segments, self._masks, strict=True)]  # fmt: skip
+        self._time = np.concatenate(times)
+        self._segment = np.repeat(np.arange(len(times)), [len(t) for t in times])
+
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:
         """Which samples count: one (channels, bins) a segment."""
@@ -152,20 +180,29 @@ class Problem:
         :param model: the model.
         :return: effects by segment.
         """
-        owned = {(c.effect, c.place) for c in model.causes}
         always = [
             EffectUse(t.effect, t.place, {find(t.effect).parameters[0].name: t.axis.value(z)})
-            for t, z in zip(self.tolerances, model.moved, strict=True)
-            if z != 0.0 and (t.effect, t.place) not in owned
+            for t, z in self.moved(model)
         ]
-        always += [
-            EffectUse('presliding_friction', place, {'torque': 0.0, 'angle': BRISTLE.value(z)})
-            for place, z in model.bristle.items()
-        ]
+        always += bristles(model)
         own = [cause.use(model.values(k)) for k, cause in enumerate(model.causes)]
         return [
             always + [use for c, use in zip(model.causes, own, strict=True) if c.acts_in(s.name)]
             for s in self._segments
+        ]
+
+    def moved(self, model: Model) -> list[tuple[Tolerance, float]]:
+        """
+        Return the tolerances that have moved, but for those that a cause stands for.
+
+        :param model: the model.
+        :return: each with its place on its axis.
+        """
+        owned = {(c.effect, c.place) for c in model.causes}
+        return [
+            (t, float(z))
+            for t, z in zip(self.tolerances, model.moved, strict=True)
+            if z != 0.0 and (t.effect, t.place) not in owned
         ]
 
     def left(self, model: Model) -> FloatArray:
@@ -176,9 +213,19 @@ class Problem:
         :return: measured less predicted, shape (samples,).
         """
         predicted = self.rollouts.predicted(self.uses(model))
-        return self.flat(
-            [m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)]
-        )
+        left = self.flat([m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)])
+        for k, cause in enumerate(model.causes):
+            for instant in _instants(cause, model.values(k)):
+                near = self._near(cause, instant)
+                left[near] = np.clip(left[near], -2.0, 2.0)
+        return left
+
+    def _near(self, cause: Candidate, instant: float) -> NDArray[np.bool_]:
+        """Return the samples so near an event that how it came about matters."""
+        acting = np.array([cause.acts_in(s.name) for s in self._segments])
+        near: NDArray[np.bool_] = np.abs(self._time - instant) < SUDDEN
+        there: NDArray[np.bool_] = near & acting[self._segment]
+        return there
 
     def flat(self, rows: Sequence[FloatArray]) -> FloatArray:
         """
@@ -192,6 +239,53 @@ class Problem:
             for row, noise, mask in zip(rows, self._noise, self._masks, strict=True)
         ]
         return np.concatenate(parts)
+
+    def clusters(self, length: float) -> NDArray[np.int64]:
+        """
+        Return which stretch of time each sample belongs to.
+
+        :param length: of a stretch [s].
+        :return: numbers from zero, shape (samples,).
+        """
+        own = np.floor(self._time / length).astype(np.int64)
+        _, numbered = np.unique(np.stack([self._segment, own]), axis=1, return_inverse=True)
+        return numbered.reshape(-1).astype(np.int64)
+
+    def pieces(self, length: float) -> NDArray[np.int64]:
+        """
+        Return which piece of a recording each sample belongs to, whatever its channel.
+
+        :param length: of a piece [s].
+        :return: numbers from zero, shape (samples,).
+        """
+        return self.clusters(length)
+
+    def spans(self) -> list[tuple[int, int, slice]]:
+        """Return segment, channel, and where its samples lie in a vector."""
+        found = []
+        at = 0
+        for n, mask in enumerate(self._masks):
+            for c, row in enumerate(mask):
+                count = int(row.sum())
+                found.append((n, c, slice(at, at + count)))
+                at += count
+        return found
+
+    def structured(self, left: FloatArray) -> float:
+        """
+        Return the power of what is left that is not noise: what neighbouring bins share.
+
+        :param left: what is left, shape (samples,).
+        :return: mean square in noise deviations, noise taken off.
+        """
+        total, samples = 0.0, 0
+        for _, _, own in self.groups(left):
+            if len(own) <= NEIGHBOURS:
+                continue
+            step = own[NEIGHBOURS:] - own[:-NEIGHBOURS]
+            total += float(own @ own) - 0.5 * float(step @ step) * len(own) / len(step)
+            samples += len(own)
+        return max(0.0, total / max(samples, 1))
 
     def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:
         """
@@ -280,9 +374,7 @@ class Problem:
         own = len(axes) - len(self.tolerances)
         # a tolerance that a cause owns does not move
         owned = {(c.effect, c.place) for c in model.causes}
-        still = np.array(
-            [False] * own + [(t.effect, t.place) in owned for t in self.tolerances]
-        )
+        still = np.array([False] * own + [(t.effect, t.place) in owned for t in self.tolerances])
         x = self.pack(model)
         x[still] = 0.0
         x = np.clip(x, bounds[:, 0], bounds[:, 1])

@@ -6,7 +6,7 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property
@@ -14,13 +14,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import SimulationError, TendonError
+from tendon_ros.base.errors import EffectError, SimulationError
+from tendon_ros.effects import find
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict
-from tendon_ros.effects import find
 
 FloatArray = NDArray[np.float64]
 
@@ -36,9 +36,7 @@ class Rollouts:
     :param jobs: threads that roll out at the same time.
     """
 
-    def __init__(
-        self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1
-    ) -> None:
+    def __init__(self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
@@ -70,9 +68,7 @@ class Rollouts:
             for segment in self.segments
         )
 
-    def predicted(
-        self, uses: Sequence[Sequence[EffectUse]]
-    ) -> tuple[FloatArray, ...]:
+    def predicted(self, uses: Sequence[Sequence[EffectUse]]) -> tuple[FloatArray, ...]:
         """
         Predict every channel.
 
@@ -91,15 +87,47 @@ class Rollouts:
         :param models: for each, the effects by segment.
         :return: predictions of each, as :meth:`predicted` gives them.
         """
-        tasks = [
-            (n, uses) for model in models for n, uses in enumerate(model)
-        ]
+        tasks = [(n, uses) for model in models for n, uses in enumerate(model)]
         if self._pool is None:
             flat = [self._one(task) for task in tasks]
         else:
             flat = list(self._pool.map(self._one, tasks))
         width = len(self.segments)
         return [tuple(flat[k : k + width]) for k in range(0, len(flat), width)]
+
+    def rest(self) -> dict[str, float]:
+        """
+        Return where the pulleys without a motor have come to at the end of the first segment.
+
+        :return: angles [rad] by pulley.
+        """
+        segment, base = self.segments[0], self._base[0]
+        rows = predict(
+            base,
+            true_motion(base, modified(base), segment),
+            segment.prescribed,
+            len(segment.time) - 1,
+            tolerance=TOLERANCE,
+        )
+        last = rows.angle[-1]
+        return {name: float(last[base.index(name)]) for name in base.inner}
+
+    def contact_forces(self) -> list[FloatArray]:
+        """Return the largest predicted contact force of each segment's bins, shape (bins,)."""
+        found = []
+        for n, segment in enumerate(self.segments):
+            base = self._base[n]
+            rows = predict(
+                base,
+                true_motion(base, modified(base), segment),
+                segment.prescribed,
+                len(segment.time) - 1,
+                tolerance=TOLERANCE,
+                pose=segment.pose,
+            )
+            force = np.abs(rows.contact_force)
+            found.append(force.max(axis=1) if force.size else np.zeros(len(rows)))
+        return found
 
     def _one(self, task: tuple[int, Sequence[EffectUse]]) -> FloatArray:
         n, uses = task
@@ -117,7 +145,7 @@ class Rollouts:
                 tolerance=TOLERANCE,
                 pose=segment.pose,
             )
-        except SimulationError:
+        except (SimulationError, EffectError):
             return np.full((len(segment.measured), bins), np.inf)
         found = rows.reading[:, self._columns[n]].T
         return _as_reported(instrument, numbers, segment, found)
@@ -191,23 +219,3 @@ def _as_reported(
         given = np.clip(gain * measured.value + bias, -limit, limit)
         found[row] = measured.value + (asked - given) / gain
     return found
-
-
-def scoped(
-    uses: Sequence[EffectUse], segments: Sequence[Segment], scope: Mapping[int, str]
-) -> list[list[EffectUse]]:
-    """
-    Return effects for each segment: all of them, but those with a scope only where it says.
-
-    :param uses: the effects.
-    :param segments: the segments.
-    :param scope: the one segment's name, for effects by their number that act in one alone.
-    :return: the effects by segment.
-    """
-    return [
-        [use for k, use in enumerate(uses) if scope.get(k, segment.name) == segment.name]
-        for segment in segments
-    ]
-
-
-__all__ = ['Rollouts', 'TendonError', 'modified', 'scoped', 'true_motion']

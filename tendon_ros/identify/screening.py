@@ -8,19 +8,15 @@ rollout at that size corrects for friction and slack, which are far from linear.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
-
-Map = Callable[..., 'map[Proposal]']
 
 
 @dataclass(frozen=True)
@@ -57,38 +53,42 @@ class Screen:
 
     def proposals(self, candidate: Candidate) -> list[Proposal]:
         """
-        Return what a candidate could explain, one proposal for each start.
+        Return what a candidate could explain to first order, one proposal for each start.
 
         :param candidate: the candidate.
         :return: the proposals, best first; empty where it changes nothing that was measured.
         """
         found = []
         for values in self._starts(candidate):
-            found += self._weighed(candidate, values)
+            first = self._signature(candidate, values)
+            if first is None:
+                continue
+            size, gain, seen, own = first
+            if not candidate.scales:
+                found.append(Proposal(candidate, values, gain if size > 0.0 else 0.0, seen, own))
+            elif size <= 0.0 and candidate.one_sided:
+                found.append(Proposal(candidate, values, 0.0, seen, own))
+            else:
+                scaled = _scaled(candidate, values, float(np.clip(size, -30.0, 30.0)))
+                found.append(Proposal(candidate, scaled, gain, seen, own))
         return sorted(found, key=lambda p: -p.gain)
 
-    def _weighed(self, candidate: Candidate, values: dict[str, float]) -> list[Proposal]:
-        sized = [p for p in candidate.parameters if not p.is_shape]
-        model = self.fit.model
-        first = self._signature(candidate, values)
-        if first is None:
-            return []
-        size, gain, seen, own = first
-        if not sized:
-            return [Proposal(candidate, values, gain, seen, own)] if size > 0.0 else []
-        one_sided = all(p.low >= p.neutral for p in sized)
-        if one_sided and size <= 0.0:
-            return [Proposal(candidate, values, 0.0, seen, own)]
-        del model
-        scaled = _scaled(candidate, values, float(np.clip(size, -30.0, 30.0)))
-        second = self._signature(candidate, scaled)
+    def corrected(self, proposal: Proposal) -> Proposal:
+        """
+        Return a proposal judged at the size that it proposes.
+
+        :param proposal: of this state.
+        :return: the same candidate, its size corrected once more.
+        """
+        candidate = proposal.candidate
+        if not candidate.scales or proposal.gain <= 0.0:
+            return proposal
+        second = self._signature(candidate, proposal.values)
         if second is None:
-            return [Proposal(candidate, values, gain, seen, own)]
-        correction, gain, _, _ = second
-        scaled = _scaled(candidate, scaled, float(np.clip(correction, 0.1, 10.0)))
-        if correction <= 0.0:
-            gain = 0.0
-        return [Proposal(candidate, scaled, gain, seen, own)]
+            return proposal
+        size, gain, _, _ = second
+        values = _scaled(candidate, dict(proposal.values), float(np.clip(size, 0.1, 10.0)))
+        return replace(proposal, values=values, gain=gain if size > 0.0 else 0.0)
 
     def _signature(
         self, candidate: Candidate, values: dict[str, float]
@@ -179,7 +179,8 @@ class Screen:
             np.add.at(square, at, own * own)
         if square.sum() < 1e-6:
             return None
-        return period * np.arange(bins + 1), np.cumsum(pull), np.cumsum(square)
+        time: FloatArray = period * np.arange(bins + 1, dtype=np.float64)
+        return time, np.cumsum(pull), np.cumsum(square)
 
     def _cycles(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
         """Find the period of a ripple from what is left of the motor's torque over its angle."""
@@ -201,9 +202,7 @@ class Screen:
             part = left[::2] - left[::2].mean()
             power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)
         [name] = [p.name for p in candidate.parameters if p.search == 'cycles']
-        peaks = [
-            k for k in range(1, len(grid) - 1) if power[k - 1] <= power[k] >= power[k + 1]
-        ]
+        peaks = [k for k in range(1, len(grid) - 1) if power[k - 1] <= power[k] >= power[k + 1]]
         peaks.sort(key=lambda k: -power[k])
         shapes = starts(candidate)
         return [one | {name: float(grid[k])} for k in peaks[:3] for one in shapes]
@@ -233,23 +232,3 @@ def _scaled(candidate: Candidate, values: dict[str, float], size: float) -> dict
             grown = p.neutral + size * (values[p.name] - p.neutral)
             found[p.name] = float(np.clip(grown, p.low, p.high))
     return found
-
-
-def identifiers(candidates: Sequence[Candidate]) -> list[str]:
-    """
-    Return ``effect@place`` of candidates.
-
-    :param candidates: the candidates.
-    :return: texts.
-    """
-    return [f'{c.effect}@{c.place}' for c in candidates]
-
-
-def hook_of(candidate: Candidate) -> str:
-    """
-    Return where in the equations a candidate acts.
-
-    :param candidate: the candidate.
-    :return: the hook of its effect, or nothing.
-    """
-    return find(candidate.effect).hook

@@ -33,12 +33,14 @@ class Measured:
     One channel on the bins of its segment.
 
     ``value``, shape (bins,), in the sensor's unit, NaN where nothing was measured; ``noise``,
-    shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean.
+    shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean;
+    ``floor`` is what the sensor alone would by its data sheet.
     """
 
     sensor: Sensor
     value: FloatArray
     noise: FloatArray
+    floor: float
 
 
 @dataclass(frozen=True)
@@ -121,17 +123,15 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     start = max(float(recording[name].time[0]) for name in encoders)
     end = min(float(recording[name].time[-1]) for name in encoders)
     bins = int((end - start) / period)
-    time = period * (np.arange(bins) + 0.5)
+    time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
     sensors = {s.channel: s for s in instrument.sensors}
-    rows = [
-        _motion(recording[name], sensors[name], start, period, bins) for name in encoders
-    ]
+    rows = [_motion(recording[name], sensors[name], start, period, bins) for name in encoders]
     measured = []
     for sensor in instrument.sensors:
         if sensor.channel in encoders or sensor.channel not in recording:
             continue
         value, noise = _binned(recording[sensor.channel], sensor, start, period, bins)
-        measured.append(Measured(sensor, value, noise))
+        measured.append(Measured(sensor, value, np.full(bins, noise), noise))
     return Segment(
         name=recording.name,
         period=period,
@@ -150,7 +150,9 @@ def _motion(
 ) -> FloatArray:
     """Return the smoothed motion at the middles of the bins."""
     sampling = float(np.median(np.diff(channel.time)))
-    grid = start + sampling * np.arange(round(bins * period / sampling) + 1)
+    grid: FloatArray = start + sampling * np.arange(
+        round(bins * period / sampling) + 1, dtype=np.float64
+    )
     nearest = np.clip(np.searchsorted(channel.time, grid), 1, len(channel.time) - 1)
     gap = np.minimum(
         np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
@@ -158,7 +160,8 @@ def _motion(
     error = reading_error(channel, sensor)
     angle = smoothed(channel.at(grid), gap < 1.5 * sampling, error)
     middles = start + period * (np.arange(bins) + 0.5)
-    return np.interp(middles, grid, angle)
+    found: FloatArray = np.interp(middles, grid, angle)
+    return found
 
 
 def reading_error(channel: Channel, sensor: Sensor) -> float:
@@ -181,25 +184,27 @@ def reading_error(channel: Channel, sensor: Sensor) -> float:
 
 def _binned(
     channel: Channel, sensor: Sensor, start: float, period: float, bins: int
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, float]:
     """Return the means over bins, NaN where empty, and the noise that they keep."""
     index = np.floor((channel.time - start) / period).astype(np.int64)
     inside = (index >= 0) & (index < bins)
     count = np.bincount(index[inside], minlength=bins).astype(np.float64)
     total = np.bincount(index[inside], weights=channel.value[inside], minlength=bins)
-    moment = np.bincount(
-        index[inside], weights=channel.time[inside] - start, minlength=bins
-    )
+    moment = np.bincount(index[inside], weights=channel.time[inside] - start, minlength=bins)
     with np.errstate(invalid='ignore', divide='ignore'):
         value = total / count
         late = moment / count - period * (np.arange(bins) + 0.5)
     known = count > 0
     if known.sum() > 2:
         # the mean belongs to the mean of the stamps, which need not be the bin's middle
-        slope = np.gradient(np.where(known, value, np.interp(
-            np.arange(bins), np.flatnonzero(known), value[known])), period)
+        slope = np.gradient(
+            np.where(
+                known, value, np.interp(np.arange(bins), np.flatnonzero(known), value[known])
+            ),
+            period,
+        )
         value = np.where(known, value - slope * late, np.nan)
     quantised = sensor.resolution / np.sqrt(12.0)
     per_bin = max(1.0, float(np.median(count[known]))) if known.any() else 1.0
     noise = float(np.hypot(quantised, sensor.noise / np.sqrt(per_bin)))
-    return value, np.full(bins, noise)
+    return value, noise

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 import math
 
-from tendon_ros.model.instrument import Instrument
 from tendon_ros.identify.axis import Axis
+from tendon_ros.model.instrument import Instrument
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
 MEASURED = 0.02

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -31,8 +31,8 @@ RING = 64
 #: sizes of the named places in each array, in terms of the sizes of the network
 PLACES: Mapping[str, Mapping[str, str]] = {
     'm': {
-        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'LASH': 'N', 'RADIUS': 'M*WIDTH', 'ARM': 'M*WIDTH',
-        'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M',
+        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'LASH': 'N', 'RADIUS': 'M*WIDTH',
+        'ARM': 'M*WIDTH', 'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M',
         'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
         'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
         'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U', 'KP': 'U',
@@ -50,8 +50,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'TENSIONS': '2', 'WINDINGS': '2',
     },
     'w': {
-        'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N', 'ACCELERATION': 'N',
-        'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M', 'TENSION': 'M',
+        'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N',
+        'ACCELERATION': 'N', 'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M', 'TENSION': 'M',
         'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
         'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
         'BUDGET_W': 'N', 'BUDGET_L': 'N', 'SIDE': 'N', 'GAP': 'K', 'FORCE': 'K', 'FORCE_Q': 'K',
@@ -68,7 +68,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     },
     'c': {
         'CLOCK': '1', 'STEP': '1', 'TICK': '1', 'COMMAND': 'U', 'SUM': 'U', 'LAST': 'U',
-        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'DRUM': 'N', 'PAST': 'Q*RING',
+        'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'DRUM': 'N',
+        'PAST': 'Q*RING',
     },
     'g': {'MODE': 'N', 'TOUCH': 'K', 'COUNT': '3'},
 }  # fmt: skip
@@ -150,38 +151,54 @@ def structure_of(instrument: Instrument) -> Structure:
     :param instrument: the network.
     :return: its structure, pulleys in an order that keeps the matrix banded.
     """
-    n = len(instrument.pulleys)
-    routes = [row.route for row in instrument.links]
-    contacts = [c.route for c in instrument.contacts]
+    return _structure(
+        instrument.pulley_names,
+        tuple((row.name, tuple(row.route)) for row in instrument.links),
+        tuple((c.name, tuple(c.route)) for c in instrument.contacts),
+        tuple((m.name, m.pulley) for m in instrument.motors),
+        tuple((s.kind, s.of, s.through) for s in instrument.sensors),
+    )
+
+
+@lru_cache(maxsize=64)
+def _structure(
+    pulleys: tuple[str, ...],
+    links: tuple[tuple[str, tuple[str, ...]], ...],
+    contacts: tuple[tuple[str, tuple[str, ...]], ...],
+    motors: tuple[tuple[str, str], ...],
+    sensors: tuple[tuple[str, str, str], ...],
+) -> Structure:
+    """Return the structure of a network by its names: fits ask for it thousands of times."""
+    n = len(pulleys)
     joined = np.eye(n)
-    for route in (*routes, *contacts):
+    for _, route in (*links, *contacts):
         for a in route:
             for b in route:
-                joined[instrument.index(a), instrument.index(b)] = 1.0
+                joined[pulleys.index(a), pulleys.index(b)] = 1.0
     order = tuple(int(i) for i in reverse_cuthill_mckee(csr_array(joined), symmetric_mode=True))
-    place = {instrument.pulley_names[i]: at for at, i in enumerate(order)}
-    loop_pulley = tuple(tuple(place[name] for name in route) for route in routes)
-    contact_pulley = tuple(tuple(place[name] for name in route) for route in contacts)
+    place = {pulleys[i]: at for at, i in enumerate(order)}
+    loop_pulley = tuple(tuple(place[name] for name in route) for _, route in links)
+    contact_pulley = tuple(tuple(place[name] for name in route) for _, route in contacts)
     width = max((len(row) for row in (*loop_pulley, *contact_pulley)), default=1)
     source: list[int] = []
     index: list[int] = []
-    through = [row.name for row in instrument.links]
-    for sensor in instrument.sensors:
-        source.append(SENSOR_SOURCES.index(sensor.kind))
-        if sensor.kind in ('angle', 'velocity'):
-            index.append(place[sensor.of])
-        elif sensor.kind == 'motor_torque':
-            index.append(instrument.motor_names.index(sensor.of))
-        elif sensor.kind == 'loop_torque':
-            k = through.index(sensor.through)
-            index.append(width * k + loop_pulley[k].index(place[sensor.of]))
+    through = [name for name, _ in links]
+    for kind, of, link in sensors:
+        source.append(SENSOR_SOURCES.index(kind))
+        if kind in ('angle', 'velocity'):
+            index.append(place[of])
+        elif kind == 'motor_torque':
+            index.append([name for name, _ in motors].index(of))
+        elif kind == 'loop_torque':
+            k = through.index(link)
+            index.append(width * k + loop_pulley[k].index(place[of]))
         else:
-            index.append([c.name for c in instrument.contacts].index(sensor.of))
+            index.append([name for name, _ in contacts].index(of))
     return Structure(
         order=order,
         loop_pulley=loop_pulley,
         contact_pulley=contact_pulley,
-        motor_pulley=tuple(place[m.pulley] for m in instrument.motors),
+        motor_pulley=tuple(place[pulley] for _, pulley in motors),
         sensor_source=tuple(source),
         sensor_index=tuple(index),
     )

@@ -88,7 +88,10 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
         if way == 0.0:  # stuck: the budget of the direction in which it is pushed
             way = 1.0 if w[TORQUE + i] > 0.0 else -1.0
             omega = 0.0
-        limit, by_w, by_l = budget_law(d[n], way * omega, way, w[LOAD + i], m, d[n + 2])
+        side = way
+        if d[BRISTLE + i] >= 0:  # bristles that are bent forward rub as in forward motion
+            side = 1.0 if w[SIDE + i] < 0.0 else -1.0
+        limit, by_w, by_l = budget_law(d[n], way * omega, side, w[LOAD + i], m, d[n + 2])
         w[BUDGET + i] += limit
         w[BUDGET_W + i] += by_w * way
         w[BUDGET_L + i] += by_l

@@ -1,0 +1,87 @@
+"""``tendon diagnose``: where the gap to the model lies, what causes it, how far it shrinks."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+HELP = 'say where the gap between recordings and model lies, and which effect causes it'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare the arguments.
+
+    :param parser: of this verb.
+    """
+    parser.add_argument('bag', nargs='+', metavar='BAG', help='folder, .mcap or .db3 file')
+    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    parser.add_argument(
+        '--out',
+        required=True,
+        metavar='DIR',
+        help='folder for report.html, diagnosis.json and instrument.yaml',
+    )
+    parser.add_argument(
+        '--withhold',
+        action='append',
+        default=[],
+        metavar='EFFECT[@PLACE]',
+        help='do without this effect; can be given several times',
+    )
+    parser.add_argument('--jobs', type=int, metavar='N', help='threads; default: one a core')
+    parser.add_argument('--namespace', help='of the instrument, where a bag has several')
+
+
+def run(args: argparse.Namespace) -> None:
+    """
+    Diagnose, write what was found, and say it.
+
+    :param args: parsed arguments.
+    """
+    import os
+
+    from tendon_ros.bags.reader import read_recording
+    from tendon_ros.base.errors import RecordingError
+    from tendon_ros.cli.progress import told
+    from tendon_ros.diagnose.memory import Memory
+    from tendon_ros.diagnose.session import diagnose
+    from tendon_ros.identify.candidate import check_withheld
+    from tendon_ros.model.instrument_file import load_instrument, save_instrument
+    from tendon_ros.report.diagnosis_page import diagnosis_page
+    from tendon_ros.report.diagnosis_text import summary
+    from tendon_ros.report.page import write
+
+    jobs = args.jobs if args.jobs is not None else os.cpu_count() or 1
+    if jobs < 1:
+        raise RecordingError(f'--jobs {jobs}: give at least 1')
+    instrument = load_instrument(args.instrument)
+    check_withheld(instrument, args.withhold)
+    recordings = [read_recording(bag, args.namespace) for bag in args.bag]
+    folder = Path(args.out)
+    write(folder / 'README.txt', WHAT_IS_HERE)
+    memory = Memory(folder / 'unfinished.json', recordings, instrument, args.withhold)
+    with told() as report:
+        outcome = diagnose(
+            recordings,
+            instrument,
+            withhold=args.withhold,
+            jobs=jobs,
+            report=report,
+            memory=memory,
+        )
+    text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
+    write(folder / 'diagnosis.json', text + '\n')
+    save_instrument(outcome.instrument, folder / 'instrument.yaml')
+    write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
+    memory.forget()
+    print(summary(outcome.diagnosis))
+    print(f'{folder / "report.html"}: the whole of it, with pictures')
+
+
+WHAT_IS_HERE = (
+    'report.html: what was found, with pictures.\n'
+    'diagnosis.json: the same for programs.\n'
+    'instrument.yaml: the instrument file with the accepted effects; simulator, estimator and '
+    'diagnose take it as it is.\n'
+)

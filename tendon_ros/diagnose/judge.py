@@ -1,0 +1,141 @@
+"""
+From fits to probabilities: how far to believe what was found.
+
+A likelihood that took thousands of correlated samples for independent would be certain of
+anything. What speaks for a cause is measured instead by numbers that do not grow with the length
+of a recording, and calibrated on the development seeds of the blind benchmark by logistic
+regression (``tendon blind calibrate``; docs/blind.md has the curve).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.search import FORM, Found, Rival
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
+
+#: misfit beyond the best, per sample in noise power, within which two explanations are equal
+TIE = 0.015
+#: part of what the best leaves unexplained within which they are equal as well
+TIE_FORM = 0.5
+
+
+@dataclass(frozen=True)
+class Signs:
+    """
+    What speaks for a cause, all in noise power per sample.
+
+    ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
+    channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
+    causes explain; ``ahead``: misfit of the best other candidate in its place, beyond its own, as
+    part of ``worth``; ``causes``: how many there are.
+    """
+
+    worth: float
+    in_one: float
+    left: float
+    explained: float
+    ahead: float
+    causes: int
+
+    @property
+    def features(self) -> FloatArray:
+        """Inputs of the logistic regression."""
+        worth = max(self.worth, self.in_one / 4.0, 1e-6)
+        return np.array(
+            [
+                1.0,
+                math.log10(worth),
+                math.log10(min(max(self.left / worth, 1e-4), 10.0)),
+                math.log10(min(max(self.ahead, 1e-3), 1.0)),
+                float(self.causes - 1),
+                math.log10(min(max(self.worth / max(self.explained, 1e-9), 1e-4), 1.0)),
+            ]
+        )
+
+
+#: weights of the features, fitted on development seeds
+WEIGHTS = np.array([1.5, 0.3, -1.2, 0.8, -0.5, 0.6])
+
+
+def probability(signs: Signs) -> float:
+    """
+    Return the probability that a cause is true, or one that it cannot be told from.
+
+    :param signs: what speaks for it.
+    :return: 0 to 1.
+    """
+    return 1.0 / (1.0 + math.exp(-float(np.clip(WEIGHTS @ signs.features, -30.0, 30.0))))
+
+
+def equals(cause: Candidate, rivals: list[Rival], final: Fit, left: float) -> list[Rival]:
+    """
+    Return the rivals that these data cannot tell from a cause.
+
+    :param cause: the cause.
+    :param rivals: fitted in its place.
+    :param final: the fit with the cause.
+    :param left: structured misfit that stays.
+    :return: those whose misfit is as good.
+    """
+    samples = len(final.left)
+    allowed = TIE + TIE_FORM * left
+    return [
+        r for r in rivals if (r.fit.cost - final.cost) / samples <= allowed and not _degenerate(r)
+    ]
+
+
+def _degenerate(rival: Rival) -> bool:
+    """Return whether a fit has bent its effect into something else that has a name of its own."""
+    k = len(rival.fit.model.causes) - 1
+    values = rival.fit.model.values(k)
+    for p in rival.candidate.parameters:
+        if p.search == 'duration' and values[p.name] > 8.0:
+            return True
+        if p.search == 'cycles' and values[p.name] < 1.0:
+            return True
+    return False
+
+
+def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float]) -> Signs:
+    """
+    Return what speaks for one cause.
+
+    :param problem: the fitted bins.
+    :param found: what the search has found.
+    :param k: which cause.
+    :param gains: what leaving it out costs, over all samples and in one channel.
+    :return: the signs.
+    """
+    final = found.final
+    samples = len(final.left)
+    left = problem.structured(final.left)
+    worth = max(gains[0], 1e-9)
+    equal = {r.candidate for r in equals(final.model.causes[k], found.rivals[k], final, left)}
+    others = [r.fit.cost for r in found.rivals[k] if r.candidate not in equal]
+    ahead = (min(others) - final.cost) / samples / worth if others else 1.0
+    explained = (found.start.cost - final.cost) / samples
+    return Signs(worth, gains[1], left, explained, ahead, len(final.model.causes))
+
+
+def left_over(left: float, explained: float) -> float:
+    """
+    Return the probability that something of the gap has a cause that was not named.
+
+    :param left: structured misfit that stays, in noise power per sample.
+    :param explained: what all causes explain.
+    :return: 0 to 1.
+    """
+    scale = LEFT_NOISE + FORM**2 * explained
+    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / scale)))
+
+
+#: structured power that recordings without any effect leave
+LEFT_NOISE = 0.15

@@ -1,0 +1,114 @@
+"""Shares of the gap by place and regime: those of the causes, and of what stays unexplained."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.result import Where
+from tendon_ros.diagnose.search import Found
+from tendon_ros.diagnose.where import Places, regimes
+from tendon_ros.identify.fit import Problem
+
+FloatArray = NDArray[np.float64]
+
+SHOWN = 0.02  # shares below this are not listed
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """Where the gap lies, most first; and where and when what stays unexplained does."""
+
+    listed: tuple[Where, ...]
+    unexplained: tuple[str, ...]
+    unexplained_regime: str
+
+
+def whereabouts(
+    ready: Prepared, found: Found, probabilities: Sequence[float], left: float
+) -> Whereabouts:
+    """
+    Share the gap out among places and regimes.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param probabilities: of the causes, in their order.
+    :param left: structured misfit that stays, in noise power per sample.
+    :return: the shares.
+    """
+    problem = ready.problem
+    final = found.final
+    texts = _regimes_of(problem)
+    powers: dict[tuple[str, str], float] = {}
+    explained = max(0.0, (found.start.cost - final.cost))
+    worths = [max(w.cost - final.cost, 1e-9) for w in found.without]
+    for k, cause in enumerate(final.model.causes):
+        gain = np.maximum(found.without[k].left ** 2 - final.left**2, 0.0)
+        part = explained * worths[k] / sum(worths)
+        believed = probabilities[k]
+        _spread(powers, cause.place, gain, texts, believed * part)
+        if believed < 0.5:
+            # a doubtful cause says little of the place: ask the places themselves
+            start = replace(found.without[k])
+            for place, taken in Places(problem, start).shares(2):
+                share = (1.0 - believed) * part * taken.sum() / max(gain.sum(), taken.sum(), 1e-9)
+                _spread(powers, place, np.maximum(taken, 0.0), texts, share)
+    rest: dict[tuple[str, str], float] = {}
+    stays = left * len(final.left)
+    if left > 0.0:
+        shares = Places(problem, final).shares()
+        total = sum(float(t.sum()) for _, t in shares) + 1e-9
+        for place, taken in shares:
+            _spread(rest, place, np.maximum(taken, 0.0), texts, stays * float(taken.sum()) / total)
+    for key, value in rest.items():
+        powers[key] = powers.get(key, 0.0) + value
+    whole = sum(powers.values()) + 1e-30
+    listed = [
+        Where(place=p, regime=r, share=min(1.0, v / whole))
+        for (p, r), v in powers.items()
+        if v / whole >= SHOWN
+    ]
+    by_place: dict[str, float] = {}
+    by_regime: dict[str, float] = {}
+    for (place, regime), value in rest.items():
+        by_place[place] = by_place.get(place, 0.0) + value
+        by_regime[regime] = by_regime.get(regime, 0.0) + value
+    places = sorted(by_place, key=lambda p: -by_place[p])
+    return Whereabouts(
+        tuple(sorted(listed, key=lambda w: -w.share)),
+        tuple(places[:3]),
+        max(by_regime, key=lambda r: by_regime[r]) if by_regime else '',
+    )
+
+
+def _spread(
+    powers: dict[tuple[str, str], float],
+    place: str,
+    gain: FloatArray,
+    texts: NDArray[np.str_],
+    whole: float,
+) -> None:
+    """Add a power at a place, shared among regimes as the gain is."""
+    total = float(gain.sum())
+    if total <= 0.0:
+        return
+    for regime in np.unique(texts):
+        part = float(gain[texts == regime].sum()) / total
+        if part > 0.0:
+            key = (place, str(regime))
+            powers[key] = powers.get(key, 0.0) + whole * part
+
+
+def _regimes_of(problem: Problem) -> NDArray[np.str_]:
+    """Return the regime of each sample."""
+    forces = problem.rollouts.contact_forces()
+    texts = [
+        regimes(segment, force)
+        for segment, force in zip(problem.rollouts.segments, forces, strict=True)
+    ]
+    rows = [texts[n][problem.masks[n][c]] for n, c, _ in problem.spans()]
+    return np.concatenate(rows)

@@ -1,0 +1,218 @@
+"""
+From admitted recordings to a least-squares problem: bins, contacts, noise, what is held out.
+
+Contacts belong to the surroundings, not to the instrument: whether the tip met one is found for
+each recording. Noise is what is left between neighbouring bins, and what the motion's counts make
+of every channel through the stiff cables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.base.recording import Recording
+from tendon_ros.identify.fit import Model, NEIGHBOURS, Problem
+from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.segment import (
+    bin_length,
+    Measured,
+    motor_channels,
+    reading_error,
+    Segment,
+    segment_of,
+    SETTLING,
+)
+from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.identify.tolerance import tolerances
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.signals import Signals
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument remembers a disturbance
+KEPT = 4  # of so many blocks in a row one fewer is fitted
+WHOLE = 6  # recordings from which on whole ones are held out
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The problem of the fitted bins, that of those held out, and of both."""
+
+    problem: Problem
+    held: Problem
+    whole: Problem
+    counts: tuple[tuple[FloatArray, ...], ...]
+
+    def heard_again(self, model: Model) -> Prepared:
+        """
+        Return the same with the noise that is heard once a model has taken its part away.
+
+        :param model: what is believed.
+        :return: the problems with the lower noise.
+        """
+        rollouts = self.whole.rollouts
+        predicted = rollouts.predicted(self.whole.uses(model))
+        segments = [
+            segment.with_noise(
+                [
+                    np.minimum(m.noise, np.hypot(_heard(m, row), by_counts))
+                    for m, row, by_counts in zip(segment.measured, rows, counts, strict=True)
+                ]
+            )
+            for segment, rows, counts in zip(
+                rollouts.segments, predicted, self.counts, strict=True
+            )
+        ]
+        return _problems(rollouts.instrument, segments, self.counts)
+
+
+def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepared:
+    """
+    Make recordings ready to be diagnosed.
+
+    :param recordings: admitted ones.
+    :param instrument: the network.
+    :return: the problem.
+    """
+    period = bin_length(recordings, instrument)
+    segments = [segment_of(instrument, r, period) for r in recordings]
+    segments = [_placed(instrument, s) for s in segments]
+    noisy = [_with_noise(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
+    return _problems(instrument, [s for s, _ in noisy], tuple(c for _, c in noisy))
+
+
+def _problems(
+    instrument: Instrument,
+    segments: Sequence[Segment],
+    counts: tuple[tuple[FloatArray, ...], ...],
+) -> Prepared:
+    rollouts = Rollouts(instrument, segments)
+    usable = [s.time > SETTLING for s in segments]
+    held = held_out(segments)
+    moving = tolerances(instrument)
+    return Prepared(
+        Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
+        Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
+        Problem(rollouts, moving, usable),
+        counts,
+    )
+
+
+def held_out(segments: Sequence[Segment]) -> list[BoolArray]:
+    """
+    Return which bins no fit may see.
+
+    :param segments: the recordings.
+    :return: one mask a segment: every fourth recording where there are many, else blocks.
+    """
+    if len(segments) >= WHOLE:
+        return [np.full(len(s.time), n % KEPT == KEPT - 2) for n, s in enumerate(segments)]
+    # blocks of different recordings are staggered, so that no phase of a motion is always unseen
+    return [
+        (np.floor(s.time / BLOCK).astype(np.int64) + n) % KEPT == KEPT - 1
+        for n, s in enumerate(segments)
+    ]
+
+
+def _placed(instrument: Instrument, segment: Segment) -> Segment:
+    """Return a segment with the contacts that were there, and the pose from which it began."""
+    names = segment.contacts
+    best, least = segment, np.inf
+    for there in product((True, False), repeat=min(len(names), 3)):
+        kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
+        trial = _posed(instrument, replace(segment, contacts=kept))
+        [predicted] = Rollouts(instrument, [trial]).predicted([[]])
+        misfit = 0.0
+        for row, measured in zip(predicted, trial.measured, strict=True):
+            known = np.isfinite(measured.value)
+            if known.sum() > 2:
+                off = (row - measured.value)[known]
+                misfit += float(np.mean(off**2)) / (np.var(measured.value[known]) + 1e-30)
+        if misfit < 0.999 * least:
+            best, least = trial, misfit
+    return best
+
+
+def _posed(instrument: Instrument, segment: Segment) -> Segment:
+    """Return a segment with the pose in which the model rests before the motion begins."""
+    first = segment.motion.value[:, 0]
+    resting = replace(
+        segment,
+        motion=Signals(
+            np.repeat(first[:, None], 200, axis=1),
+            np.zeros((len(first), 200)),
+            0.0,
+            0.01,
+        ),
+        time=0.01 * np.arange(200, dtype=np.float64),
+        period=0.01,
+        measured=(),
+        pose={},
+    )
+    inner = Rollouts(instrument, [resting]).rest()
+    return replace(segment, pose=inner)
+
+
+def _with_noise(
+    instrument: Instrument, segment: Segment, recording: Recording
+) -> tuple[Segment, tuple[FloatArray, ...]]:
+    """Return a segment with the noise found in the data, and the part that counts make."""
+    [predicted] = Rollouts(instrument, [segment]).predicted([[]])
+    [disturbed] = Rollouts(
+        instrument, [replace(segment, motion=_recounted(instrument, segment, recording))]
+    ).predicted([[]])
+    window = max(3, round(1.0 / segment.period))
+    level = np.full(window, 1.0 / window)
+    counts = tuple(
+        np.sqrt(np.convolve((other - row) ** 2, level, mode='same')[: len(row)])
+        for row, other in zip(predicted, disturbed, strict=True)
+    )
+    noise = [
+        np.hypot(_heard(measured, row), by_counts)
+        for measured, row, by_counts in zip(segment.measured, predicted, counts, strict=True)
+    ]
+    return segment.with_noise(noise), counts
+
+
+def _heard(measured: Measured, predicted: FloatArray) -> float:
+    """Return the noise of a channel: what bins that are near each other do not share."""
+    left = measured.value - predicted
+    step = left[NEIGHBOURS:] - left[:-NEIGHBOURS]
+    step = step[np.isfinite(step)]
+    found = 1.4826 * float(np.median(np.abs(step))) / np.sqrt(2.0) if step.size else 0.0
+    # a silent sensor would make any misfit infinite: a millionth of its range is noise
+    span = float(np.nanmax(np.abs(measured.value), initial=0.0))
+    return max(found, measured.floor, 1e-6 * span + 1e-12)
+
+
+def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:
+    """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
+    rows = []
+    sensors = {s.channel: s for s in instrument.sensors}
+    for row, name in enumerate(motor_channels(instrument)):
+        motion = segment.motion.value[row]
+        error = reading_error(recording[name], sensors[name])
+        count = error * np.sqrt(12.0)
+        if count <= 0.0:
+            rows.append(motion)
+            continue
+        sampling = float(np.median(np.diff(recording[name].time)))
+        fine = np.interp(
+            np.arange(0.0, len(motion) * segment.period, sampling),
+            segment.period * np.arange(len(motion)),
+            motion,
+        )
+        counted = count * np.round(fine / count + 0.5) - 0.5 * count
+        again = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error)
+        rows.append(
+            np.interp(
+                segment.period * np.arange(len(motion)), sampling * np.arange(len(again)), again
+            )
+        )
+    return Signals.smooth(segment.motion.start, segment.motion.step, np.array(rows))

@@ -1,0 +1,256 @@
+"""
+The search for causes: which effects, together, explain what is left.
+
+Forward steps add the candidate that explains most when everything is refitted; after each step
+every cause must still be worth having, and at the end each one is challenged by all others in its
+place. The order in which causes were found therefore decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.memory import Memory
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit, Model, Problem
+from tendon_ros.identify.screening import Proposal, Screen
+
+FloatArray = NDArray[np.float64]
+Report = Callable[[str, float], None]
+
+CORRECTED = 36  # proposals that are judged again at their own size
+SHORTLIST = 10  # candidates that are fitted at each step
+MOST = 5  # causes
+#: a law of the catalogue is never quite the law of the machine: what a cause leaves of what it
+#: explained, in amplitude, before another cause is believed
+FORM = 0.08
+#: part of the cost that one more parameter must save
+PARAMETER = 0.004
+#: part of the noise's power that a cause must explain, over all samples and over one channel
+LEAST, LEAST_IN_ONE = 0.03, 0.12
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A candidate fitted in the place of a cause, or beside the causes."""
+
+    candidate: Candidate
+    fit: Fit
+
+
+@dataclass
+class Found:
+    """What the search has found: the states it went through, and who else would have done."""
+
+    states: list[Fit] = field(default_factory=list)
+    rivals: list[list[Rival]] = field(default_factory=list)
+    without: list[Fit] = field(default_factory=list)
+    proposals: list[Proposal] = field(default_factory=list)
+    next_best: list[Rival] = field(default_factory=list)
+
+    @property
+    def start(self) -> Fit:
+        """The instrument file, its numbers moved within their tolerances."""
+        return self.states[0]
+
+    @property
+    def final(self) -> Fit:
+        """All causes."""
+        return self.states[-1]
+
+
+def _judged(rival: Rival) -> float:
+    """Return the cost of a fit, more where more parameters made it."""
+    return rival.fit.cost * (1.0 + PARAMETER * len(rival.candidate.parameters))
+
+
+class Search:
+    """
+    Searches one problem.
+
+    :param problem: the fitted bins.
+    :param candidates: all that may be named.
+    :param jobs: threads.
+    :param report: called with what is being done and the part that is done.
+    :param memory: of the steps of an interrupted search.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        candidates: Sequence[Candidate],
+        jobs: int = 2,
+        report: Report = lambda _what, _done: None,
+        memory: Memory | None = None,
+    ) -> None:
+        self.problem = problem
+        self.candidates = tuple(candidates)
+        self.report = report
+        self._memory = memory
+        self._pool = ThreadPoolExecutor(jobs)
+
+    def run(self) -> Found:
+        """
+        Search.
+
+        :return: what was found.
+        """
+        found = Found()
+        self.report('fitting the tolerances', 0.0)
+        state = self._settled(self.problem.empty)
+        found.states.append(state)
+        for model in (self._memory.models() if self._memory else [])[1:]:
+            state = self._settled(model)
+            found.states.append(state)
+        while len(state.model.causes) < MOST:
+            step = len(state.model.causes)
+            self.report(f'looking for cause {step + 1}', 0.05 + 0.1 * step)
+            proposals = self.screened(state)
+            if not found.proposals:
+                found.proposals = proposals
+            rivals = self.fitted(state, proposals)
+            found.next_best = rivals
+            if not rivals or not self.worthwhile(found.start, state, rivals[0].fit):
+                break
+            state = self._settled(rivals[0].fit.model)
+            state = self._pruned(found.start, state)
+            if len(state.model.causes) <= step:
+                break
+            found.states.append(state)
+            if self._memory:
+                self._memory.keep([s.model for s in found.states])
+        self._challenge(found)
+        return found
+
+    # -- steps
+
+    def screened(self, state: Fit, leave: Sequence[Candidate] = ()) -> list[Proposal]:
+        """
+        Return the best proposal of each candidate, best first.
+
+        :param state: what holds already.
+        :param leave: candidates to leave out.
+        :return: the proposals.
+        """
+        screen = Screen(self.problem, state)
+        out = {(c.effect, c.place) for c in (*state.model.causes, *leave)}
+        asked = [c for c in self.candidates if (c.effect, c.place) not in out]
+        first = [p for ps in self._pool.map(screen.proposals, asked) for p in ps[:2]]
+        first.sort(key=lambda p: -p.gain)
+        second = list(self._pool.map(screen.corrected, first[:CORRECTED])) + first[CORRECTED:]
+        best: dict[Candidate, Proposal] = {}
+        for p in sorted(second, key=lambda p: -p.gain):
+            best.setdefault(p.candidate, p)
+        return list(best.values())
+
+    def fitted(self, state: Fit, proposals: Sequence[Proposal]) -> list[Rival]:
+        """
+        Fit the most promising proposals beside what holds already.
+
+        :param state: what holds already.
+        :param proposals: best first.
+        :return: the fits, best first.
+        """
+        chosen = list(proposals[:SHORTLIST])
+        pressed = self._pressed(state)
+        chosen += [p for p in proposals[SHORTLIST:] if (p.candidate.effect, p.candidate.place)
+                   in pressed]  # fmt: skip
+        own = state.slope.shape[1] - len(self.problem.tolerances)
+        shared = state.slope[:, own:]
+
+        def one(proposal: Proposal) -> Rival:
+            values = pressed.get(
+                (proposal.candidate.effect, proposal.candidate.place), proposal.values
+            )
+            model = state.model.joined(proposal.candidate, values)
+            fit = self.problem.fitted(model, shared, rounds=6, accuracy=1e-2)
+            return Rival(proposal.candidate, fit)
+
+        found = [r for r in self._pool.map(one, chosen) if np.isfinite(r.fit.cost)]
+        return sorted(found, key=_judged)
+
+    def _pressed(self, state: Fit) -> dict[tuple[str, str], dict[str, float]]:
+        """Return the tolerances that are at their ends: there, the number itself may be off."""
+        found = {}
+        for t, z in zip(self.problem.tolerances, state.model.moved, strict=True):
+            low, high = t.axis.ends
+            if z <= low + 0.02 or z >= high - 0.02:
+                name = Candidate(t.effect, t.place).parameters[0].name
+                found[t.effect, t.place] = {name: t.axis.value(z)}
+        return found
+
+    def worthwhile(self, start: Fit, before: Fit, after: Fit) -> bool:
+        """
+        Return whether one more cause is believed.
+
+        :param start: without any cause.
+        :param before: without this one.
+        :param after: with it.
+        :return: whether it explains more than noise and the form of the other laws can.
+        """
+        gain, in_one = self.gains(before, after)
+        samples = len(before.left)
+        explained = max(0.0, start.cost - before.cost) / samples
+        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > FORM**2 * explained
+
+    def gains(self, before: Fit, after: Fit) -> tuple[float, float]:
+        """
+        Return how much power falls, in units of the noise's.
+
+        :param before: the poorer fit.
+        :param after: the better one.
+        :return: over all samples, and in the channel where it falls most.
+        """
+        total: dict[str, list[float]] = {}
+        segments = self.problem.rollouts.segments
+        for (n, c, a), (_, _, b) in zip(
+            self.problem.groups(before.left), self.problem.groups(after.left), strict=True
+        ):
+            name = segments[n].measured[c].sensor.channel
+            entry = total.setdefault(name, [0.0, 0.0])
+            entry[0] += float(a @ a - b @ b)
+            entry[1] += len(a)
+        gain = (before.cost - after.cost) / max(len(before.left), 1)
+        return gain, max((e[0] / e[1] for e in total.values() if e[1]), default=0.0)
+
+    def _settled(self, model: Model) -> Fit:
+        """Fit with the tolerances' derivatives where the model now is."""
+        fit = self.problem.fitted(model, rounds=8, accuracy=1e-3)
+        return self.problem.fitted(fit.model, rounds=4, accuracy=1e-3)
+
+    def _pruned(self, start: Fit, state: Fit) -> Fit:
+        """Drop causes that later ones have made superfluous."""
+        k = 0
+        while k < len(state.model.causes) - 1:
+            smaller = self.problem.fitted(state.model.without(k), rounds=6, accuracy=1e-2)
+            if self.worthwhile(start, smaller, state):
+                k += 1
+            else:
+                state = self._settled(smaller.model)
+        return state
+
+    def _challenge(self, found: Found) -> None:
+        """Let every other candidate take the place of each cause; keep whoever fits better."""
+        for _ in range(3):
+            state = found.final
+            found.rivals, found.without = [], []
+            better: Fit | None = None
+            for k, cause in enumerate(state.model.causes):
+                self.report(f'challenging {cause.effect} at {cause.place}', 0.6 + 0.05 * k)
+                without = self._settled(state.model.without(k))
+                found.without.append(without)
+                rivals = self.fitted(without, self.screened(without, leave=[cause]))
+                found.rivals.append(rivals)
+                if rivals and rivals[0].fit.cost < 0.995 * state.cost:
+                    trial = self._settled(rivals[0].fit.model)
+                    if trial.cost < 0.995 * state.cost:
+                        better = trial
+                        break
+            if better is None:
+                break
+            found.states[-1] = better
