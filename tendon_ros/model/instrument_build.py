@@ -239,6 +239,17 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
     for name, encoder in file.joint_sensors.items():
         position = channel_name('pulley', f'pulley_{name}', 'position')
         yield _angle_sensor(name, position, 1.0, encoder)
+    driven = {motor.pulley or name for name, motor in file.motors.items()}
+    for name, speed in file.speed_sensors.items():
+        group = 'actuator' if name in driven else 'pulley'
+        yield Sensor(
+            name=f'speed_{name}',
+            kind='velocity',
+            of=name,
+            channel=channel_name(group, f'pulley_{name}', 'velocity'),
+            resolution=speed.resolution,
+            noise=speed.noise,
+        )
     for name, shaft in file.shaft_sensors.items():
         yield Sensor(
             name=f'shaft_{name}',

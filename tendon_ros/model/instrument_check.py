@@ -68,6 +68,8 @@ def _check_sensors(file: InstrumentSection) -> None:
                 f'joint_sensors.{pulley}: the pulley has a motor; write its encoder into '
                 f'motors.{driven[pulley]}.encoder'
             )
+    for pulley in file.speed_sensors:
+        _known('speed_sensors', pulley, 'pulley', file.pulleys)
     pulls: dict[str, LoopSection | CouplingSection] = {**file.loops, **file.couplings}
     for pulley, shaft in file.shaft_sensors.items():
         field = f'shaft_sensors.{pulley}'

@@ -88,6 +88,7 @@ def _document(one: Instrument) -> Document:
             for s in one.sensors
             if s.kind == 'angle' and s.of not in one.driven
         },
+        'speed_sensors': {s.of: _reading(s, 'rad/s') for s in one.sensors if s.kind == 'velocity'},
         'shaft_sensors': {
             s.of: {'through': s.through, **_reading(s, 'N*m')}
             for s in one.sensors

@@ -42,6 +42,9 @@ contacts:
   tip: {route: {02: 1}, arm: 50 mm, stiffness: 200 N/mm, damping: 3 s/m, position: 17 deg}
 joint_sensors:
   1: {resolution: 0.1 deg}
+speed_sensors:
+  M: {resolution: 1 rpm}
+  1: {noise: 0.1 rad/s}
 shaft_sensors:
   02: {through: shaft}
 load_cell: {noise: 0.05 N}
@@ -84,6 +87,8 @@ def test_sensors_have_the_names_and_channels_of_the_contract(tmp_path):
         Sensor(
             'encoder_1', 'angle', '1', 'pulley/pulley_1/position', resolution=math.radians(0.1)
         ),
+        Sensor('speed_M', 'velocity', 'M', 'actuator/pulley_M/velocity', resolution=math.pi / 30),
+        Sensor('speed_1', 'velocity', '1', 'pulley/pulley_1/velocity', noise=0.1),
         Sensor('shaft_02', 'loop_torque', '02', 'pulley/pulley_02/effort', through='shaft'),
         Sensor('load_cell', 'contact_force', 'tip', 'load_cell/force', noise=0.05),
     )
@@ -93,6 +98,12 @@ def test_sensors_have_the_names_and_channels_of_the_contract(tmp_path):
 def test_installed_instruments_come_back_as_they_were(name, tmp_path):
     one = load_instrument(name)
     assert one.name == name
+    save_instrument(one, tmp_path / 'again.yaml')
+    assert load_instrument(tmp_path / 'again.yaml') == one
+
+
+def test_every_section_comes_back_as_it_was(tmp_path):
+    one = load_instrument(write(tmp_path, GOOD))
     save_instrument(one, tmp_path / 'again.yaml')
     assert load_instrument(tmp_path / 'again.yaml') == one
 
@@ -201,6 +212,8 @@ FAULTS = [
     ('damping: 3 s/m', 'enabled: perhaps', "contacts.tip.enabled: 'perhaps'"),
     ('  1: {resolution', '  M: {resolution', 'joint_sensors.M: the pulley has a motor'),
     ('  1: {resolution', '  X: {resolution', "joint_sensors: no pulley 'X'"),
+    ('  1: {noise: 0.1 rad/s}', '  X: {}', "speed_sensors: no pulley 'X'"),
+    ('noise: 0.1 rad/s', 'noise: 0.1 rad', 'speed_sensors.1.noise: '),
     ('through: shaft', 'through: m1', "shaft_sensors.02.through: no pulley of its route '02'"),
     ('through: shaft', 'through: x', "shaft_sensors.02.through: no loop or coupling 'x'"),
     ('load_cell: {', 'load_cell: {contact: tap, ', "load_cell.contact: no contact 'tap'"),

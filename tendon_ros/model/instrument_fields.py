@@ -1,0 +1,102 @@
+"""
+The fields of an instrument file: how the text in each is read.
+
+Every scalar arrives as text (see :mod:`tendon_ros.model.yaml_text`).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator
+
+from tendon_ros.model.quantity import parsed
+from tendon_ros.model.tolerance import read_stated, read_tolerance, Stated
+
+
+def quantity(unit: str, sign: str = '') -> BeforeValidator:
+    """
+    Return a validator that reads a quantity.
+
+    :param unit: its SI unit.
+    :param sign: ``positive``, ``not negative``, ``not zero`` or nothing.
+    :return: the validator.
+    """
+
+    def read(text: object) -> float:
+        value = text if isinstance(text, float) else parsed(text, unit)
+        _check_sign(text, value, sign)
+        return value
+
+    return BeforeValidator(read)
+
+
+def stated(unit: str, sign: str = '') -> PlainValidator:
+    """
+    Return a validator that reads a quantity which may carry a tolerance.
+
+    :param unit: its SI unit.
+    :param sign: as for :func:`quantity`.
+    :return: the validator.
+    """
+
+    def read(text: object) -> Stated:
+        known = read_stated(text, unit)
+        _check_sign(text, known.value, sign)
+        return known
+
+    return PlainValidator(read)
+
+
+def _check_sign(text: object, value: float, sign: str) -> None:
+    holds = {'positive': value > 0, 'not negative': value >= 0, 'not zero': value != 0}
+    if not holds.get(sign, True):
+        raise ValueError(f'{text!r} must be {sign}')
+
+
+def _read_name(text: str) -> str:
+    if not re.fullmatch('[A-Za-z0-9_]+', text):
+        raise ValueError(f'{text!r} is no name; use letters (a-z), digits and underscores')
+    return text
+
+
+def _read_count(text: object) -> int:
+    number = str(text)
+    if not number.isdecimal() or int(number) < 1:
+        raise ValueError(f'{text!r} is not a whole number of at least 1; write one such as 28000')
+    return int(number)
+
+
+def column(unit: str) -> BeforeValidator:
+    """
+    Return a validator that reads ``{mm: [0, 0.1, ...]}`` as numbers.
+
+    :param unit: the SI unit to read them in.
+    :return: the validator.
+    """
+
+    def read(value: object) -> tuple[float, ...]:
+        mend = f'write a unit and its numbers, such as {{{_COLUMN_UNITS[unit]}: [0, 0.5, 1]}}'
+        if not isinstance(value, dict) or len(value) != 1:
+            raise ValueError(f'is not one unit with a list; {mend}')
+        [(own, numbers)] = value.items()
+        if not isinstance(numbers, list):
+            raise ValueError(f'{own} holds no list; {mend}')
+        return tuple(parsed(f'{number} {own}', unit) for number in numbers)
+
+    return BeforeValidator(read)
+
+
+_COLUMN_UNITS = {'m': 'mm', 'N': 'N'}
+
+Name = Annotated[str, AfterValidator(_read_name)]
+Count = Annotated[int, BeforeValidator(_read_count)]
+Switch = Annotated[bool, Field(strict=False)]
+Radius = Annotated[float, quantity('m', 'not zero')]
+Ratio = Annotated[float, quantity('1', 'not zero')]
+Sign = Literal['1', '-1', '+1']
+Inertia = Annotated[Stated, stated('kg*m^2', 'positive')]
+Damping = Annotated[Stated, stated('N*m*s/rad', 'not negative')]
+#: a factor on numbers that stand elsewhere, of which only the tolerance can be given
+Factor = Annotated[Stated, PlainValidator(lambda text: Stated(1.0, read_tolerance(text)))]
