@@ -15,16 +15,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.search import FORM, Found, Rival
+from tendon_ros.diagnose.search import FORM, Found, Rival, tie
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
-
-#: misfit beyond the best, per sample in noise power, within which two explanations are equal
-TIE = 0.015
-#: part of what the best leaves unexplained within which they are equal as well
-TIE_FORM = 0.5
 
 
 @dataclass(frozen=True)
@@ -75,33 +70,27 @@ def probability(signs: Signs) -> float:
     return 1.0 / (1.0 + math.exp(-float(np.clip(WEIGHTS @ signs.features, -30.0, 30.0))))
 
 
-def equals(cause: Candidate, rivals: list[Rival], final: Fit, left: float) -> list[Rival]:
+def equals(problem: Problem, cause: Candidate, rivals: list[Rival], final: Fit) -> list[Rival]:
     """
     Return the rivals that these data cannot tell from a cause.
 
+    A rival that needs more parameters to do as well is a special case of itself that looks like
+    the cause; it is not counted.
+
+    :param problem: the fitted bins.
     :param cause: the cause.
     :param rivals: fitted in its place.
     :param final: the fit with the cause.
-    :param left: structured misfit that stays.
     :return: those whose misfit is as good.
     """
     samples = len(final.left)
-    allowed = TIE + TIE_FORM * left
+    allowed = tie(problem, final)
     return [
-        r for r in rivals if (r.fit.cost - final.cost) / samples <= allowed and not _degenerate(r)
+        r
+        for r in rivals
+        if (r.fit.cost - final.cost) / samples <= allowed
+        and len(r.candidate.parameters) <= len(cause.parameters)
     ]
-
-
-def _degenerate(rival: Rival) -> bool:
-    """Return whether a fit has bent its effect into something else that has a name of its own."""
-    k = len(rival.fit.model.causes) - 1
-    values = rival.fit.model.values(k)
-    for p in rival.candidate.parameters:
-        if p.search == 'duration' and values[p.name] > 8.0:
-            return True
-        if p.search == 'cycles' and values[p.name] < 1.0:
-            return True
-    return False
 
 
 def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float]) -> Signs:
@@ -118,7 +107,7 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     samples = len(final.left)
     left = problem.structured(final.left)
     worth = max(gains[0], 1e-9)
-    equal = {r.candidate for r in equals(final.model.causes[k], found.rivals[k], final, left)}
+    equal = {r.candidate for r in equals(problem, final.model.causes[k], found.rivals[k], final)}
     others = [r.fit.cost for r in found.rivals[k] if r.candidate not in equal]
     ahead = (min(others) - final.cost) / samples / worth if others else 1.0
     explained = (found.start.cost - final.cost) / samples

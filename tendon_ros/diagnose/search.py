@@ -8,7 +8,7 @@ place. The order in which causes were found therefore decides nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit, Model, Problem
+from tendon_ros.identify.fit import BRISTLE, Fit, Model, Problem
 from tendon_ros.identify.screening import Proposal, Screen
 
 FloatArray = NDArray[np.float64]
@@ -29,6 +29,10 @@ MOST = 5  # causes
 #: a law of the catalogue is never quite the law of the machine: what a cause leaves of what it
 #: explained, in amplitude, before another cause is believed
 FORM = 0.08
+#: misfit beyond the best, in noise power per sample, within which two explanations are equal;
+#: and the same as a part of the structure that the best leaves
+TIE, TIE_FORM = 0.015, 0.3
+ROUNDS = 4  # of challenges
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 #: part of the noise's power that a cause must explain, over all samples and over one channel
@@ -93,6 +97,7 @@ class Search:
         self.report = report
         self._memory = memory
         self._pool = ThreadPoolExecutor(jobs)
+        self._longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
 
     def run(self) -> Found:
         """
@@ -160,18 +165,22 @@ class Search:
         pressed = self._pressed(state)
         chosen += [p for p in proposals[SHORTLIST:] if (p.candidate.effect, p.candidate.place)
                    in pressed]  # fmt: skip
-        own = state.slope.shape[1] - len(self.problem.tolerances)
-        shared = state.slope[:, own:]
+        known = self.problem.slopes(state)
 
         def one(proposal: Proposal) -> Rival:
             values = pressed.get(
                 (proposal.candidate.effect, proposal.candidate.place), proposal.values
             )
             model = state.model.joined(proposal.candidate, values)
-            fit = self.problem.fitted(model, shared, rounds=6, accuracy=1e-2)
+            fit = self.problem.fitted(model, known, rounds=6, accuracy=1e-2)
             return Rival(proposal.candidate, fit)
 
-        found = [r for r in self._pool.map(one, chosen) if np.isfinite(r.fit.cost)]
+        found = [
+            r
+            for r in self._pool.map(one, chosen)
+            if np.isfinite(r.fit.cost)
+            and not degenerate(r.candidate, r.fit.model.values(-1), self._longest)
+        ]
         return sorted(found, key=_judged)
 
     def _pressed(self, state: Fit) -> dict[tuple[str, str], dict[str, float]]:
@@ -220,14 +229,17 @@ class Search:
 
     def _settled(self, model: Model) -> Fit:
         """Fit with the tolerances' derivatives where the model now is."""
-        fit = self.problem.fitted(model, rounds=8, accuracy=1e-3)
+        fit = self.problem.fitted(model, rounds=6, accuracy=1e-3)
+        if not model.causes and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
+            return fit
         return self.problem.fitted(fit.model, rounds=4, accuracy=1e-3)
 
     def _pruned(self, start: Fit, state: Fit) -> Fit:
         """Drop causes that later ones have made superfluous."""
         k = 0
         while k < len(state.model.causes) - 1:
-            smaller = self.problem.fitted(state.model.without(k), rounds=6, accuracy=1e-2)
+            known = self.problem.slopes(state)
+            smaller = self.problem.fitted(state.model.without(k), known, rounds=6, accuracy=1e-2)
             if self.worthwhile(start, smaller, state):
                 k += 1
             else:
@@ -236,21 +248,69 @@ class Search:
 
     def _challenge(self, found: Found) -> None:
         """Let every other candidate take the place of each cause; keep whoever fits better."""
-        for _ in range(3):
+        for _ in range(ROUNDS):
             state = found.final
             found.rivals, found.without = [], []
             better: Fit | None = None
             for k, cause in enumerate(state.model.causes):
                 self.report(f'challenging {cause.effect} at {cause.place}', 0.6 + 0.05 * k)
-                without = self._settled(state.model.without(k))
+                known = self.problem.slopes(state)
+                smaller = state.model.without(k)
+                without = self.problem.fitted(smaller, known, rounds=6, accuracy=1e-2)
+                without = self.problem.fitted(without.model, rounds=3, accuracy=1e-3)
                 found.without.append(without)
                 rivals = self.fitted(without, self.screened(without, leave=[cause]))
                 found.rivals.append(rivals)
-                if rivals and rivals[0].fit.cost < 0.995 * state.cost:
-                    trial = self._settled(rivals[0].fit.model)
-                    if trial.cost < 0.995 * state.cost:
-                        better = trial
-                        break
+                better = self._better(state, cause, rivals)
+                if better is not None:
+                    break
             if better is None:
                 break
             found.states[-1] = better
+
+    def _better(self, state: Fit, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
+        """Return a fit with another candidate: one that fits better, or as well and is simpler."""
+        allowed = tie(self.problem, state)
+        simple = [
+            r
+            for r in rivals
+            if len(r.candidate.parameters) < len(cause.parameters)
+            and (r.fit.cost - state.cost) / len(state.left) <= allowed
+        ]
+        for rival in [*simple[:1], *rivals[:1]]:
+            if rival in simple or rival.fit.cost < 0.99 * state.cost:
+                trial = self._settled(rival.fit.model)
+                if rival in simple or trial.cost < 0.99 * state.cost:
+                    return trial
+        return None
+
+
+def tie(problem: Problem, final: Fit) -> float:
+    """
+    Return the misfit beyond the best within which two explanations are equal.
+
+    :param problem: the data.
+    :param final: the best.
+    :return: in noise power per sample.
+    """
+    return TIE + TIE_FORM * problem.structured(final.left)
+
+
+def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float) -> bool:
+    """
+    Return whether a fit has bent an effect into another that has a name of its own.
+
+    :param candidate: the effect.
+    :param values: of its parameters.
+    :param longest: duration of the longest recording [s].
+    :return: whether: an event that always lasts, a ripple without a period, bristles as short as
+        those of any dry friction.
+    """
+    for p in candidate.parameters:
+        if p.search == 'duration' and values[p.name] > 0.5 * longest:
+            return True
+        if p.search == 'cycles' and values[p.name] < 1.0:
+            return True
+        if p.search == 'shape' and values[p.name] < 2.0 * BRISTLE.centre:
+            return True
+    return False

@@ -98,7 +98,7 @@ def diagnose(
     heard = ready.heard_again(found.final.model)
     final = heard.problem.fitted(found.final.model, rounds=6, accuracy=1e-4)
     explained = max(0.0, (found.start.cost - found.final.cost) / len(found.final.left))
-    causes = _causes(heard, search, found, final, left)
+    causes = _causes(heard, search, found, final)
     places = whereabouts(ready, found, [c.probability for c in causes], left)
     beyond = left_over(left, explained)
     gaps = _gaps(heard, final.model)
@@ -138,14 +138,14 @@ def diagnose(
     return Outcome(diagnosis, evidence, repaired)
 
 
-def _causes(heard: Prepared, search: Search, found: Found, final: Fit, left: float) -> list[Cause]:
+def _causes(heard: Prepared, search: Search, found: Found, final: Fit) -> list[Cause]:
     intervals = parameter_intervals(heard.problem, final)
     causes = []
     for k, cause in enumerate(final.model.causes):
         gains = search.gains(found.without[k], found.final)
         signs = signs_of(search.problem, found, k, gains)
         values = final.model.values(k)
-        same = equals(cause, found.rivals[k], found.final, left)
+        same = equals(search.problem, cause, found.rivals[k], found.final)
         names = list(dict.fromkeys((r.candidate.effect, r.candidate.place) for r in same))
         causes.append(
             Cause(

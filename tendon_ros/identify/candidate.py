@@ -1,4 +1,4 @@
-"""Candidates: every effect of the catalogue at every place where it can act, and where fits begin."""
+"""Candidates: every effect at every place where it can act, and where fits begin."""
 
 from __future__ import annotations
 

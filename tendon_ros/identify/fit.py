@@ -326,6 +326,14 @@ class Problem:
         own = [axis_of(p) for c in model.causes for p in c.parameters]
         return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
 
+    def labels(self, model: Model) -> list[str]:
+        """Return a name for each unknown that holds in any model which has it."""
+        own = [
+            f'{c.effect}@{c.place}@{c.only}.{p.name}' for c in model.causes for p in c.parameters
+        ]
+        moved = [f'{t.place}.{t.quantity}' for t in self.tolerances]
+        return [*own, *(f'{place}.bristle' for place in model.bristle), *moved]
+
     def slope(self, model: Model, left: FloatArray, columns: Sequence[int]) -> FloatArray:
         """
         Return derivatives of what is left.
@@ -339,7 +347,7 @@ class Problem:
         axes = self.axes(model)
         found = np.empty((len(left), len(columns)))
         for n, j in enumerate(columns):
-            low, high = axes[j].ends
+            high = axes[j].ends[1]
             step = 0.02 * max(1.0, abs(x[j])) if not axes[j].log else 0.05
             if axes[j].spread == 1.0:
                 step = 0.5
@@ -354,16 +362,16 @@ class Problem:
     def fitted(
         self,
         model: Model,
-        shared: FloatArray | None = None,
+        known: Mapping[str, FloatArray] | None = None,
         rounds: int = 12,
         accuracy: float = 1e-3,
-        weight: FloatArray | None = None,
     ) -> Fit:
         """
         Fit all unknowns of a model.
 
         :param model: where to begin.
-        :param shared: derivatives by the tolerances, where they are known already.
+        :param known: derivatives that are good enough as they are, by the unknown's label, such
+            as :meth:`slopes` gives them; those by tolerances are found once where not known.
         :param rounds: at most so many.
         :param accuracy: relative gain of a round below which the fit ends.
         :return: the fit.
@@ -380,15 +388,22 @@ class Problem:
         x = np.clip(x, bounds[:, 0], bounds[:, 1])
         left = self.left(self.unpack(model, x))
         cost = float(left @ left + prior @ x**2)
-        if shared is None:
-            at = self.unpack(model, x)
-            shared = self.slope(at, left, range(own, len(axes)))
+        labels = self.labels(model)
+        slope = np.zeros((len(left), len(axes)))
+        fresh = []
+        once = []
+        for j, label in enumerate(labels):
+            if known is not None and label in known:
+                slope[:, j] = known[label]
+            elif j < own:
+                fresh.append(j)
+            elif not still[j]:
+                once.append(j)
+        slope[:, once] = self.slope(self.unpack(model, x), left, once)
+        slope[:, still] = 0.0
         damping = 1e-3
-        slope = np.hstack([np.zeros((len(left), own)), shared])
         for _ in range(rounds):
-            here = self.unpack(model, x)
-            slope = np.hstack([self.slope(here, left, range(own)), shared])
-            slope[:, still] = 0.0
+            slope[:, fresh] = self.slope(self.unpack(model, x), left, fresh)
             normal = slope.T @ slope + np.diag(prior)
             gradient = slope.T @ left + prior * x
             before = cost
@@ -414,3 +429,22 @@ class Problem:
             if before - cost <= accuracy * before:
                 break
         return Fit(self.unpack(model, x), left, slope, cost)
+
+    def slopes(self, fit: Fit) -> dict[str, FloatArray]:
+        """
+        Return the derivatives of a fit by the labels of the unknowns.
+
+        :param fit: the fit.
+        :return: columns, shape (samples,) each; those of tolerances that a cause stands for are
+            left out.
+        """
+        owned = {f'{t.place}.{t.quantity}' for t in self.tolerances} - {
+            f'{t.place}.{t.quantity}'
+            for t in self.tolerances
+            if (t.effect, t.place) not in {(c.effect, c.place) for c in fit.model.causes}
+        }
+        return {
+            label: fit.slope[:, j]
+            for j, label in enumerate(self.labels(fit.model))
+            if label not in owned
+        }

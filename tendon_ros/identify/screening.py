@@ -142,7 +142,7 @@ class Screen:
         ends = len(time) - 1
         starts_at = np.arange(0, ends, max(1, ends // 400))
         best: list[tuple[float, int, int]] = []
-        for a in starts_at:
+        for a in starts_at.tolist():
             stop = np.array([ends]) if not lasting else np.arange(a + 1, ends + 1, 2)
             p, s = pull[stop] - pull[a], square[stop] - square[a]
             gain = np.where(s > 0.05 * square[-1] / max(ends, 1), p * p / np.maximum(s, 1e-12), 0)
@@ -150,7 +150,7 @@ class Screen:
             best.append((float(gain[k]), int(a), int(stop[k])))
         best.sort(reverse=True)
         for _, a, b in best[:1]:
-            size_found = -(pull[b] - pull[a]) / max(square[b] - square[a], 1e-12)
+            size_found = -float(pull[b] - pull[a]) / max(square[b] - square[a], 1e-12)
             one = dict(values) | {instant.name: float(time[a])}
             one |= {p.name: max(float(time[b] - time[a]), p.low) for p in lasting}
             grown = size.neutral + size_found * (size.typical - size.neutral)

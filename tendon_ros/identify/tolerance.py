@@ -39,7 +39,9 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
     """
     found: list[Tolerance] = []
 
-    def add(effect: str, place: str, quantity: str, unit: str, nominal: float, usual: float) -> None:  # fmt: skip
+    def add(
+        effect: str, place: str, quantity: str, unit: str, nominal: float, usual: float
+    ) -> None:
         sigma = instrument.tolerances.get(f'{place}.{quantity}', usual)
         wide = math.isinf(sigma)
         scale = (0.5 if wide else sigma) * nominal
