@@ -6,12 +6,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tendon_ros.bags.mapping import factor, Mapping, unit_of
+from tendon_ros.bags.mapping import factor, Mapping, Time, unit_of
 from tendon_ros.bags.stamps import to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, FloatArray, Recording
+
+BoolArray = NDArray[np.bool_]
 
 #: stamps that stray further from an even spacing are worth a warning [share of the spacing]
 JITTER = 0.5
@@ -53,24 +56,19 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     """Return a run as a recording."""
     warnings: list[str] = []
     place = f'{path}: run {table.key}'
-    time = _time(path, table, mapping)
-    usable = np.isfinite(time)
-    # Whole nanoseconds, as a bag keeps them, so that the bag reads back as the same numbers.
-    time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
-    latest = np.maximum.accumulate(np.where(usable, time, -np.inf))
-    usable[1:] &= time[1:] > latest[:-1]
-    if not usable.all():
-        first = int(np.flatnonzero(~usable)[0])
-        warnings.append(
-            f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not after '
-            f'the row before, or not a number), first row {first}'
-        )
-    _warn_of_jitter(place, time[usable], warnings)
+    common = _stamps(place, _time(path, table, mapping.time), warnings)
     channels = {}
     for name, source in mapping.channels.items():
         raw = table.column(source.column, f'{path}: channels.{name}')
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
         value = value + source.offset
+        if source.time is None:
+            time, usable = common
+        else:
+            own = _time(path, table, source.time)
+            taken = ~_repeated(own, value)
+            value = value[taken]
+            time, usable = _stamps(f'{place}: {name}', own[taken], warnings)
         keep = usable & np.isfinite(value)
         lost = usable & ~keep
         if not keep.any():
@@ -93,14 +91,40 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     )
 
 
-def _time(path: Path, table: Table, mapping: Mapping) -> FloatArray:
+def _time(path: Path, table: Table, time: Time) -> FloatArray:
     """Return the time of each row [s], shape (n,)."""
-    if mapping.time.rate is not None:
+    if time.rate is not None:
         rows = next(iter(table.columns.values())).size
-        return np.arange(rows) / factor(mapping.time.rate, 'Hz')
-    assert mapping.time.column is not None
-    raw = table.column(mapping.time.column, f'{path}: time')
-    return raw * factor(mapping.time.unit, 's')
+        return np.arange(rows) / factor(time.rate, 'Hz')
+    assert time.column is not None
+    raw = table.column(time.column, f'{path}: time')
+    return raw * factor(time.unit, 's')
+
+
+def _repeated(time: FloatArray, value: FloatArray) -> BoolArray:
+    """Return which rows are empty, or hold a slower channel's last sample once more."""
+    taken = np.flatnonzero(np.isfinite(time) | np.isfinite(value))
+    same = (np.diff(time[taken]) == 0.0) & (np.diff(value[taken]) == 0.0)
+    repeated = np.ones(time.size, dtype=np.bool_)
+    repeated[taken] = np.concatenate(([False], same))[: taken.size]
+    return repeated
+
+
+def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArray, BoolArray]:
+    """Return stamps as a bag keeps them, and which rows have a usable one; tell of the others."""
+    usable = np.isfinite(time)
+    # Whole nanoseconds, so that the bag reads back as the same numbers.
+    time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
+    latest = np.maximum.accumulate(np.where(usable, time, -np.inf))
+    usable[1:] &= time[1:] > latest[:-1]
+    if not usable.all():
+        first = int(np.flatnonzero(~usable)[0])
+        warnings.append(
+            f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not after '
+            f'the row before, or not a number), first row {first}'
+        )
+    _warn_of_jitter(place, time[usable], warnings)
+    return time, usable
 
 
 def _warn_of_jitter(place: str, time: FloatArray, warnings: list[str]) -> None:

@@ -14,12 +14,14 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
         scale: 1.0               # a further factor
         sign: -1                 # turns the direction
         offset: 0.5              # added last, in the channel's SI unit
+        time: {column: 9, unit: us}  # where the channel has stamps of its own
     metadata: {tool: Maryland}
     attribution: Who made the data, where it was published.
     licence: ODbL 1.0
 
 ``value = sign · scale · unit · raw + offset``. ``runs`` is for files that hold one table a run;
-without it the file is one run, and a column is one array of the file.
+without it the file is one run, and a column is one array of the file. An empty cell is a sample
+that was not taken; with stamps of its own, a row that repeats the channel's last one is none.
 """
 
 from __future__ import annotations
@@ -132,6 +134,7 @@ class Source(_Strict):
     scale: float = 1.0
     sign: Literal[1, -1] = 1
     offset: float = 0.0
+    time: Time | None = None
 
     @field_validator('scale')
     @classmethod

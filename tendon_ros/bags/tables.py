@@ -26,12 +26,13 @@ class Table:
     The columns of one run.
 
     ``columns`` by name, in the order of the file, each shape (n,); ``header`` is the text that the
-    file keeps beside the run.
+    file keeps beside the run; ``faults`` says of a column why it cannot be used.
     """
 
     key: str
     columns: Mapping[str, FloatArray]
     header: str = ''
+    faults: Mapping[str, str] = field(default_factory=dict)
     names: Sequence[str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -46,10 +47,13 @@ class Table:
         :return: shape (n,).
         :raises RecordingError: where there is none.
         """
+        name = which
         if isinstance(which, int) and which < len(self.names):
-            return self.columns[self.names[which]]
-        if isinstance(which, str) and which in self.columns:
-            return self.columns[which]
+            name = self.names[which]
+        if isinstance(name, str) and name in self.faults:
+            raise RecordingError(f'{place}: {self.faults[name]}; mend it or map another column')
+        if isinstance(name, str) and name in self.columns:
+            return self.columns[name]
         have = f'0 to {len(self.names) - 1}' if isinstance(which, int) else listed(self.names)
         raise RecordingError(f'{place}: no column {which!r} in run {self.key}; it has {have}')
 
@@ -69,8 +73,9 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
     try:
         arrays: Mapping[str, Any]
         if kind == 'csv':
-            arrays = _read_csv(path)
-        elif kind == 'npz':
+            columns, faults = _read_csv(path)
+            return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
+        if kind == 'npz':
             arrays = _Npz(path)
         else:
             found = scipy.io.loadmat(path, squeeze_me=True)
@@ -161,29 +166,45 @@ def _run(path: Path, arrays: Mapping[str, Any], key: str, runs: Runs) -> Table:
     return Table(key, {str(i): table[:, i] for i in range(table.shape[1])}, header)
 
 
-def _read_csv(path: Path) -> dict[str, FloatArray]:
-    """Return the columns of a CSV file, named by its first line where that is not numbers."""
+#: what may stand between the cells of a CSV file, the most usual first
+DELIMITERS = ',;\t'
+
+
+def _read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+    """
+    Return the columns of a CSV file, and what is wrong with those that hold more than numbers.
+
+    They are named by the first line where that is not numbers. Between semicolons, a comma is
+    taken for the decimal sign.
+    """
     with path.open(newline='', encoding='utf-8-sig') as stream:
-        rows = [row for row in csv.reader(stream) if row and not row[0].startswith('#')]
-    if not rows:
+        lines = [line for line in stream if line.strip() and not line.startswith('#')]
+    if not lines:
         raise ValueError('it is empty')
+    delimiter = max(DELIMITERS, key=lines[0].count)
+    rows = list(csv.reader(lines, delimiter=delimiter))
+    comma = ',' if delimiter == ';' else ''
     try:
-        [float(cell) for cell in rows[0]]
+        [_number(cell, comma) for cell in rows[0]]
         names, first = [str(i) for i in range(len(rows[0]))], 0
     except ValueError:
         names, first = [cell.strip() for cell in rows[0]], 1
     if len(set(names)) < len(names):
         raise ValueError('two columns have the same name')
-    columns = np.full((len(rows) - first, len(names)), np.nan)
+    table = np.full((len(rows) - first, len(names)), np.nan)
+    faults: dict[str, str] = {}
     for i, row in enumerate(rows[first:]):
         if len(row) != len(names):
             raise ValueError(f'row {i + first + 1} has {len(row)} cells for {len(names)} columns')
         for j, cell in enumerate(row):
             if cell.strip():
                 try:
-                    columns[i, j] = float(cell)
+                    table[i, j] = _number(cell, comma)
                 except ValueError:
-                    raise ValueError(
-                        f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
-                    ) from None
-    return {name: columns[:, j] for j, name in enumerate(names)}
+                    fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
+                    faults.setdefault(names[j], fault)
+    return {name: table[:, j] for j, name in enumerate(names)}, faults
+
+
+def _number(cell: str, comma: str) -> float:
+    return float(cell.replace(comma, '.') if comma else cell)

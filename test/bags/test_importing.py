@@ -288,3 +288,82 @@ def test_units():
     for text in ('1', 'count', '', 'N', 'rad/s'):
         with pytest.raises(ValueError, match=r'names no angle|converts'):
             factor(text, 'rad')
+
+
+SERVO = {
+    'format': 'csv',
+    'time': {'column': 'ms', 'unit': 'ms'},
+    'channels': {
+        'actuator/arm/position': {'column': 'deg', 'unit': 'deg'},
+        'actuator/arm/effort': {'column': 'load', 'unit': 'percent * 2.5 N m', 'sign': -1},
+        'pulley/belt/velocity': {
+            'column': 'rpm',
+            'unit': 'rpm',
+            'time': {'column': 'us', 'unit': 'us'},
+        },
+    },
+}
+
+
+def test_units_of_servos_and_stamps_of_its_own(tmp_path):
+    text = (
+        'ms,deg,load,state,us,rpm\n'
+        '0,90,10,run,,\n'
+        '20,91,-20,run,13000,60\n'
+        '40,,30,run,13000,60\n'
+        '60,93,,halt,33500,60\n'
+    )
+    (tmp_path / 'x.csv').write_text(text)
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
+    position, effort = run['actuator/arm/position'], run['actuator/arm/effort']
+    np.testing.assert_allclose(position.value, np.deg2rad([90, 91, 93]))
+    np.testing.assert_allclose(position.time, [0.0, 0.02, 0.06])
+    np.testing.assert_allclose(effort.value, [-0.25, 0.5, -0.75])
+    speed = run['pulley/belt/velocity']
+    np.testing.assert_allclose(speed.value, [2 * np.pi, 2 * np.pi])
+    np.testing.assert_array_equal(speed.time, [0.013, 0.0335])
+    back = read_recording(write_recording(run, tmp_path / 'bag'))
+    for name, channel in run.channels.items():
+        np.testing.assert_array_equal(back[name].value, channel.value)
+        np.testing.assert_allclose(back[name].time, channel.time, atol=2e-9)
+
+
+def test_text_matters_only_where_it_is_mapped(tmp_path):
+    (tmp_path / 'x.csv').write_text('ms,deg,load,us,rpm\n0,90,stall,0,1\n20,91,1,1,1\n')
+    with pytest.raises(RecordingError, match=r"row 2, column load: 'stall' is not a number; mend"):
+        imported(tmp_path, tmp_path / 'x.csv', SERVO)
+
+
+@pytest.mark.parametrize('delimiter', [';', '\t', ','])
+def test_other_delimiters(tmp_path, delimiter):
+    rows = [['t', 'motor'], ['0', '0.5'], ['1.5', '1']]
+    text = '\n'.join(delimiter.join(row) for row in rows)
+    (tmp_path / 'x.csv').write_text(text.replace('.', ',') if delimiter == ';' else text)
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
+    np.testing.assert_allclose(run['actuator/motor/position'].time, [0.0, 0.0015])
+
+
+def test_a_sample_of_a_slow_channel_that_comes_late_is_told(tmp_path):
+    text = 'ms,deg,load,us,rpm\n0,90,1,500,1\n20,91,1,400,2\n40,92,1,700,3\n'
+    (tmp_path / 'x.csv').write_text(text)
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
+    assert run['pulley/belt/velocity'].value.size == 2
+    assert run['actuator/arm/position'].value.size == 3
+    assert any('pulley/belt/velocity: 1 of 3 rows left out' in w for w in run.warnings)
+
+
+@pytest.mark.parametrize('rate', [50, 10_000])
+def test_slow_and_fast_recordings(tmp_path, rate):
+    time = np.arange(3 * rate) / rate
+    np.savetxt(
+        tmp_path / 'x.csv',
+        np.stack([1e3 * time, np.degrees(np.sin(time)), time, 1e6 * time, time], axis=1),
+        delimiter=',',
+        header='ms,deg,load,us,rpm',
+        comments='',
+        fmt='%.17g',
+    )
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
+    assert run.warnings == ()
+    np.testing.assert_allclose(run['actuator/arm/position'].value, np.sin(time), atol=1e-12)
+    np.testing.assert_allclose(run['pulley/belt/velocity'].time, time, atol=1e-9)
