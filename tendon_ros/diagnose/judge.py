@@ -48,7 +48,7 @@ class Signs:
             [
                 1.0,
                 math.log10(worth),
-                math.log10(min(max(self.left / worth, 1e-4), 10.0)),
+                math.log10(min(max(self.left / unexplainable(self.explained), 1e-2), 30.0)),
                 math.log10(min(max(self.ahead, 1e-3), 1.0)),
                 float(self.causes - 1),
                 math.log10(min(max(self.worth / max(self.explained, 1e-9), 1e-4), 1.0)),
@@ -114,6 +114,16 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     return Signs(worth, gains[1], left, explained, ahead, len(final.model.causes))
 
 
+def unexplainable(explained: float) -> float:
+    """
+    Return the structured power that stays although every cause was found.
+
+    :param explained: what all causes explain, in noise power per sample.
+    :return: in the same unit: smoothed motion and encoder counts, and the form of the laws.
+    """
+    return LEFT_NOISE + FORM**2 * explained
+
+
 def left_over(left: float, explained: float) -> float:
     """
     Return the probability that something of the gap has a cause that was not named.
@@ -122,8 +132,7 @@ def left_over(left: float, explained: float) -> float:
     :param explained: what all causes explain.
     :return: 0 to 1.
     """
-    scale = LEFT_NOISE + FORM**2 * explained
-    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / scale)))
+    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / unexplainable(explained))))
 
 
 #: structured power that recordings without any effect leave

@@ -4,27 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.result import Cause, NextExperiment
+from tendon_ros.base.errors import TendonError
+from tendon_ros.diagnose.judge import equals
+from tendon_ros.diagnose.result import NextExperiment
 from tendon_ros.diagnose.search import Found
+from tendon_ros.identify.excitation import separating, Suggestion, together
+from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import Instrument
+
+PAIRS = 2  # rivals of one cause that an experiment is sought for
+SHOWN = 2  # experiments for one cause
+LONGEST = 600.0  # [s] beyond which an experiment is not worth proposing
 
 
 def next_experiments(
-    instrument: Instrument,
-    measured: Sequence[str],
-    ready: Prepared,
-    found: Found,
-    causes: Sequence[Cause],
+    instrument: Instrument, measured: Sequence[str], problem: Problem, found: Found, jobs: int
 ) -> tuple[NextExperiment, ...]:
     """
     Return what to measure next, the most telling first.
 
     :param instrument: the network.
     :param measured: channels that were measured.
-    :param ready: the problem.
+    :param problem: the fitted bins.
     :param found: what the search has found.
-    :param causes: with what they cannot be told from.
+    :param jobs: threads.
     :return: experiments; none where nothing is left to separate.
     """
-    return ()
+    chosen: list[tuple[Suggestion, NextExperiment]] = []
+    model = found.final.model
+    for k, cause in enumerate(model.causes):
+        rivals = equals(problem, cause, found.rivals[k], found.final)[:PAIRS]
+        # with several causes, an experiment that cannot be simulated with all is none
+        pairs = [((cause, model.values(k)), (r.candidate, r.fit.model.values(-1))) for r in rivals]
+        if not pairs:
+            continue
+        try:
+            suggestions = together(separating(instrument, measured, pairs, jobs))
+        except TendonError:
+            continue
+        worth = [s for s in suggestions if s.seconds <= LONGEST]
+        seen: set[str] = set()
+        for s in worth:
+            if s.add_channel in seen:
+                continue
+            seen.add(s.add_channel)
+            chosen.append(
+                (s, NextExperiment(separates=s.separates, do=s.do, add_channel=s.add_channel))
+            )
+            if len(seen) == SHOWN:
+                break
+    chosen.sort(key=lambda pair: pair[0].order)
+    return tuple(dict.fromkeys(one for _, one in chosen))

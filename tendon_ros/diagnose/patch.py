@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import replace
 
 from tendon_ros.identify.fit import bristles, Model, Problem
-from tendon_ros.model.instrument import contact_place, Curve, Instrument
+from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
 
 
-def patched(
-    problem: Problem, model: Model, instrument: Instrument, believed: Collection[int]
-) -> Instrument:
+def patched(problem: Problem, model: Model, instrument: Instrument) -> Instrument:
     """
-    Return the instrument with the effects that are believed, everything else as fitted.
+    Return the instrument with the causes of a model, everything else as fitted.
 
     :param problem: the data.
     :param model: the fitted model.
     :param instrument: the file as it was.
-    :param believed: which causes of the model are accepted.
     :return: effects beside those of the file; inertias, dampings, preloads and stiffnesses moved
         within their tolerances; a loop whose stiffness moved has a curve of its own.
     """
@@ -34,6 +30,10 @@ def patched(
             damping=max(0.0, p.damping + moved.get((f'pulley_{p.name}', 'damping'), 0.0)),
         )
         for p in instrument.pulleys
+    )
+    couplings = tuple(
+        replace(c, stiffness=c.stiffness * moved.get((f'coupling_{c.name}', 'stiffness'), 1.0))
+        for c in instrument.couplings
     )
     curves = {c.name: c for c in instrument.curves}
     loops = []
@@ -51,18 +51,24 @@ def patched(
         replace(
             c,
             stiffness=c.stiffness * moved.get((contact_place(instrument, c), 'stiffness'), 1.0),
+            position=c.position + moved.get((contact_place(instrument, c), 'position'), 0.0),
         )
         for c in instrument.contacts
     )
-    accepted = [model.causes[k].use(model.values(k)) for k in sorted(believed)]
-    places = {use.place for use in accepted}
-    shapes = [use for use in bristles(model) if use.place in places]
+    # a motor's torque constant is no number of the file: it stays an effect
+    gains = [
+        EffectUse(t.effect, t.place, {'gain': t.axis.value(z)})
+        for t, z in problem.moved(model)
+        if t.quantity == 'torque_gain'
+    ]
+    accepted = [model.causes[k].use(model.values(k)) for k in range(len(model.causes))]
     used = {loop.curve for loop in loops}
     return replace(
         instrument,
         pulleys=pulleys,
         loops=tuple(loops),
+        couplings=couplings,
         curves=tuple(c for name, c in curves.items() if name in used),
         contacts=contacts,
-        effects=(*instrument.effects, *accepted, *shapes),
+        effects=(*instrument.effects, *gains, *accepted, *bristles(model)),
     )

@@ -248,7 +248,7 @@ class Search:
 
     def _challenge(self, found: Found) -> None:
         """Let every other candidate take the place of each cause; keep whoever fits better."""
-        for _ in range(ROUNDS):
+        for left in reversed(range(ROUNDS)):
             state = found.final
             found.rivals, found.without = [], []
             better: Fit | None = None
@@ -261,7 +261,7 @@ class Search:
                 found.without.append(without)
                 rivals = self.fitted(without, self.screened(without, leave=[cause]))
                 found.rivals.append(rivals)
-                better = self._better(state, cause, rivals)
+                better = self._better(state, cause, rivals) if left else None
                 if better is not None:
                     break
             if better is None:

@@ -94,29 +94,39 @@ def diagnose(
     search = Search(ready.problem, candidates, jobs, report, memory)
     found = search.run()
     report('judging', 0.85)
-    left = ready.problem.structured(found.final.left)
-    heard = ready.heard_again(found.final.model)
-    final = heard.problem.fitted(found.final.model, rounds=6, accuracy=1e-4)
-    explained = max(0.0, (found.start.cost - found.final.cost) / len(found.final.left))
-    causes = _causes(heard, search, found, final)
-    places = whereabouts(ready, found, [c.probability for c in causes], left)
+    chances = [
+        probability(signs_of(search.problem, found, k, search.gains(without, found.final)))
+        for k, without in enumerate(found.without)
+    ]
+    accepted = [k for k, p in enumerate(chances) if p >= NAMED]
+    model = found.final.model
+    for k in reversed([k for k, p in enumerate(chances) if p < NAMED]):
+        model = model.without(k)
+    believed = found.final
+    if len(accepted) < len(chances):
+        believed = search.problem.fitted(model, rounds=6)
+    left = search.problem.structured(believed.left)
+    heard = ready.heard_again(model)
+    final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
+    explained = max(0.0, (found.start.cost - believed.cost) / len(believed.left))
+    causes = _causes(heard, search, found, final, accepted, chances)
+    places = whereabouts(ready, found, chances, left)
     beyond = left_over(left, explained)
     gaps = _gaps(heard, final.model)
-    believed = [k for k, c in enumerate(causes) if c.probability >= NAMED]
-    repaired = patched(ready.problem, final.model, instrument, believed)
+    repaired = patched(heard.problem, final.model, instrument)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     loops = closed_loop_gap(intake.recordings, instrument, repaired, segments)
     verdict = _verdict(causes, beyond)
     report('looking for what would separate the rest', 0.95)
-    ahead = next_experiments(instrument, sorted(measured), ready, found, causes)
+    ahead = next_experiments(instrument, sorted(measured), ready.problem, found, jobs)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=gaps,
         closed_loop=loops.gaps,
         where=places.listed,
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
-        candidates=_judged(found, causes, candidates),
+        candidates=_judged(found, causes, chances, candidates),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
@@ -138,23 +148,29 @@ def diagnose(
     return Outcome(diagnosis, evidence, repaired)
 
 
-def _causes(heard: Prepared, search: Search, found: Found, final: Fit) -> list[Cause]:
+def _causes(
+    heard: Prepared,
+    search: Search,
+    found: Found,
+    final: Fit,
+    accepted: Sequence[int],
+    chances: Sequence[float],
+) -> list[Cause]:
     intervals = parameter_intervals(heard.problem, final)
     causes = []
-    for k, cause in enumerate(final.model.causes):
-        gains = search.gains(found.without[k], found.final)
-        signs = signs_of(search.problem, found, k, gains)
-        values = final.model.values(k)
+    for n, k in enumerate(accepted):
+        cause = found.final.model.causes[k]
+        values = final.model.values(n)
         same = equals(search.problem, cause, found.rivals[k], found.final)
         names = list(dict.fromkeys((r.candidate.effect, r.candidate.place) for r in same))
         causes.append(
             Cause(
                 effect=cause.effect,
                 place=cause.place,
-                probability=probability(signs),
+                probability=chances[k],
                 parameters={
                     p.name: FittedParameter(
-                        value=values[p.name], unit=p.unit, ci95=intervals[k][p.name]
+                        value=values[p.name], unit=p.unit, ci95=intervals[n][p.name]
                     )
                     for p in cause.parameters
                 },
@@ -265,20 +281,22 @@ def _gaps(ready: Prepared, final: Model) -> tuple[ChannelGap, ...]:
 
 
 def _verdict(causes: Sequence[Cause], beyond: float) -> Verdict:
-    named = [c for c in causes if c.probability >= NAMED]
-    if not causes and beyond < NAMED:
-        return 'no_gap'
-    if named and beyond < NAMED:
-        return 'explained'
-    return 'partly_explained' if named else 'unexplained'
+    if beyond < NAMED:
+        return 'explained' if causes else 'no_gap'
+    return 'partly_explained' if causes else 'unexplained'
 
 
 def _judged(
-    found: Found, causes: Sequence[Cause], candidates: Sequence[Candidate]
+    found: Found,
+    causes: Sequence[Cause],
+    chances: Sequence[float],
+    candidates: Sequence[Candidate],
 ) -> tuple[Judged, ...]:
     """Return every candidate with its probability, and whether these data could have shown it."""
     named = {(c.effect, c.place): c for c in causes}
-    shared: dict[tuple[str, str], float] = {}
+    shared: dict[tuple[str, str], float] = {
+        (c.effect, c.place): p for c, p in zip(found.final.model.causes, chances, strict=True)
+    }
     for cause in causes:
         for other in cause.indistinguishable:
             part = cause.probability / (1 + len(cause.indistinguishable))

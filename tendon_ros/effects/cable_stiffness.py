@@ -27,7 +27,7 @@ def modify(numbers: Numbers, index: int, scale: float) -> None:
 EFFECT = Effect(
     id='cable_stiffness',
     title='Cable stiffness',
-    kinds=('cable',),
+    kinds=('cable', 'coupling'),
     parameters=(
         Parameter(
             name='scale',

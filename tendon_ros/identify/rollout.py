@@ -107,6 +107,7 @@ class Rollouts:
             true_motion(base, modified(base), segment),
             segment.prescribed,
             len(segment.time) - 1,
+            pushed=segment.pushed,
             tolerance=TOLERANCE,
         )
         last = rows.angle[-1]
@@ -122,6 +123,7 @@ class Rollouts:
                 true_motion(base, modified(base), segment),
                 segment.prescribed,
                 len(segment.time) - 1,
+                pushed=segment.pushed,
                 tolerance=TOLERANCE,
                 pose=segment.pose,
             )
@@ -142,6 +144,7 @@ class Rollouts:
                 true_motion(instrument, numbers, segment),
                 segment.prescribed,
                 bins - 1,
+                pushed=segment.pushed,
                 tolerance=TOLERANCE,
                 pose=segment.pose,
             )

@@ -195,6 +195,8 @@ class Screen:
             sensor = segments[n].measured[c].sensor
             if sensor.kind != 'motor_torque' or sensor.of != motors[0].name:
                 continue
+            if not len(left):
+                continue
             row = segments[n].prescribed.index(motors[0].pulley)
             angle = segments[n].motion.value[row][self.problem.masks[n][c]]
             wave = np.exp(1j * np.outer(grid, angle[::2]))

@@ -50,7 +50,8 @@ class Segment:
 
     ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from the
     recording's start. ``motion`` drives ``prescribed`` pulleys. ``contacts`` are those that were
-    there. ``pose`` is where the other pulleys began [rad].
+    there. ``pose`` is where the other pulleys began [rad]. ``pushed`` are pulleys on which a
+    measured load acts; its torque follows the motions in ``motion``.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Segment:
     contacts: tuple[str, ...]
     pose: Mapping[str, float]
     start: float = 0.0
+    pushed: tuple[str, ...] = ()
 
     def with_noise(self, noise: Sequence[FloatArray]) -> Segment:
         """
@@ -208,3 +210,47 @@ def _binned(
     per_bin = max(1.0, float(np.median(count[known]))) if known.any() else 1.0
     noise = float(np.hypot(quantised, sensor.noise / np.sqrt(per_bin)))
     return value, noise
+
+
+def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Segment | None:
+    """
+    Return a segment whose measured load acts on the model, in place of its contacts.
+
+    For benches where something pushes back that is no wall: the load is then known, not predicted.
+
+    :param instrument: the network.
+    :param recording: what was measured.
+    :param segment: the same on bins.
+    :return: the segment; None where no load was measured.
+    """
+    rows: list[FloatArray] = []
+    pushed: list[str] = []
+    inputs: set[str] = set()
+    contacts = {c.name: c for c in instrument.contacts}
+    for sensor in instrument.sensors:
+        if sensor.kind not in ('contact_force', 'contact_torque'):
+            continue
+        if sensor.channel not in recording:
+            continue
+        contact = contacts[sensor.of]
+        load = _motion(
+            recording[sensor.channel], sensor, segment.start, segment.period, len(segment.time)
+        )
+        arm = contact.arm if sensor.kind == 'contact_force' else 1.0
+        inputs.add(sensor.channel)
+        for pulley, ratio in contact.route.items():
+            if pulley not in segment.prescribed and pulley not in pushed:
+                pushed.append(pulley)
+                rows.append(-arm * ratio * load)
+    if not rows:
+        return None
+    driving = segment.motion.value[: len(segment.prescribed)]
+    return replace(
+        segment,
+        motion=Signals.smooth(
+            segment.motion.start, segment.motion.step, np.vstack([driving, *rows])
+        ),
+        measured=tuple(m for m in segment.measured if m.sensor.channel not in inputs),
+        contacts=(),
+        pushed=tuple(pushed),
+    )

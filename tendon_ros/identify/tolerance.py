@@ -2,21 +2,25 @@
 Tolerances: how far the numbers of an instrument file may be off without being a cause.
 
 Every number that was measured is a little wrong. A diagnosis that did not let them move would
-explain a percent of stiffness with friction.
+explain a percent of stiffness with friction. What the file calls guessed is found with everything
+else, and never a cause.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
 from tendon_ros.identify.axis import Axis
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument import contact_place, Instrument
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
 MEASURED = 0.02
-REACH = 3.0  # deviations; what lies beyond is a cause
 DAMPING = 0.06  # dampings are never known as well
+REACH = 3.0  # deviations; what lies beyond is a cause
+#: damping that a guess of zero may become, one deviation [N m s/rad]
+SOME_DAMPING = 0.01
 
 
 @dataclass(frozen=True)
@@ -35,46 +39,60 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
 
     :param instrument: the network.
     :return: its inertias, dampings, preloads and stiffnesses, with the tolerance of the file or,
-        where it names none, that of a careful measurement.
+        where it names none, that of a careful measurement; torque constants and contact positions
+        where the file gives a tolerance.
     """
-    found: list[Tolerance] = []
-
-    def add(
-        effect: str, place: str, quantity: str, unit: str, nominal: float, usual: float
-    ) -> None:
-        sigma = instrument.tolerances.get(f'{place}.{quantity}', usual)
-        wide = math.isinf(sigma)
-        scale = (0.5 if wide else sigma) * nominal
-        if scale <= 0.0:
-            return
-        centre = 1.0 if unit == '1' else 0.0
-        found.append(
-            Tolerance(
-                effect,
-                place,
-                quantity,
-                _axis(quantity, unit, centre, scale, wide=wide),
-            )
-        )
-
+    stated = instrument.tolerances
+    found = []
+    for effect, place, quantity, usual in _factors(instrument):
+        spread = stated.get(f'{place}.{quantity}', usual)
+        if spread > 0.0:
+            found.append(Tolerance(effect, place, quantity, _factor(quantity, spread)))
     for pulley in instrument.pulleys:
         place = f'pulley_{pulley.name}'
-        add('inertia', place, 'inertia', '1', 1.0, MEASURED)
-        add('viscous_friction', place, 'damping', 'N m s/rad', pulley.damping, DAMPING)
-    for loop in instrument.loops:
-        place = f'cable_{loop.name}'
-        add('pretension', place, 'pretension', '1', 1.0 if loop.pretension > 0.0 else 0.0,
-            MEASURED)  # fmt: skip
-        add('cable_stiffness', place, 'stiffness', '1', 1.0, MEASURED)
+        spread = stated.get(f'{place}.damping', DAMPING)
+        axis = _addition('damping', 'N m s/rad', pulley.damping, spread, SOME_DAMPING)
+        if axis is not None:
+            found.append(Tolerance('viscous_friction', place, 'damping', axis))
     for contact in instrument.contacts:
-        place = 'contact' if len(instrument.contacts) == 1 else f'contact_{contact.name}'
-        add('contact_stiffness', place, 'stiffness', '1', 1.0, MEASURED)
+        place = contact_place(instrument, contact)
+        spread = stated.get(f'{place}.position', 0.0)
+        axis = _addition('position', 'rad', 1.0, spread, 0.05)
+        if axis is not None:
+            found.append(Tolerance('contact_position', place, 'position', axis))
     return tuple(found)
 
 
-def _axis(quantity: str, unit: str, centre: float, scale: float, *, wide: bool) -> Axis:
-    """Return the axis of a tolerance: three deviations either way, or nearly anything."""
-    reach = 4.0 if wide else REACH
-    low = centre - reach * scale if not wide else (0.02 if unit == '1' else -1e3)
-    high = centre + reach * scale if not wide else (50.0 if unit == '1' else 1e3)
-    return Axis(quantity, unit, low, high, centre, scale, spread=reach if wide else 1.0)
+def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
+    """Yield effect, place, quantity and usual tolerance of all numbers that an effect scales."""
+    for pulley in instrument.pulleys:
+        yield 'inertia', f'pulley_{pulley.name}', 'inertia', MEASURED
+    for loop in instrument.loops:
+        if loop.pretension > 0.0:
+            yield 'pretension', f'cable_{loop.name}', 'pretension', MEASURED
+        yield 'cable_stiffness', f'cable_{loop.name}', 'stiffness', MEASURED
+    for coupling in instrument.couplings:
+        yield 'cable_stiffness', f'coupling_{coupling.name}', 'stiffness', MEASURED
+    for motor in instrument.motors:
+        yield 'torque_gain', f'motor_{motor.name}', 'torque_gain', 0.0
+    for contact in instrument.contacts:
+        yield 'contact_stiffness', contact_place(instrument, contact), 'stiffness', MEASURED
+
+
+def _factor(quantity: str, spread: float) -> Axis:
+    """Return the axis of a factor about one."""
+    if math.isinf(spread):
+        return Axis(quantity, '1', 0.02, 50.0, 1.0, 0.5, log=True, spread=REACH)
+    return Axis(quantity, '1', max(0.02, 1.0 - REACH * spread), 1.0 + REACH * spread, 1.0, spread,
+                spread=1.0)  # fmt: skip
+
+
+def _addition(quantity: str, unit: str, nominal: float, spread: float, some: float) -> Axis | None:
+    """Return the axis of what is added to a number; None where nothing may be."""
+    if math.isinf(spread):
+        scale = max(0.5 * nominal, some)
+        return Axis(quantity, unit, -1e3, 1e3, 0.0, scale, spread=10.0)
+    scale = spread * nominal
+    if scale <= 0.0:
+        return None
+    return Axis(quantity, unit, -REACH * scale, REACH * scale, 0.0, scale, spread=1.0)
