@@ -65,6 +65,8 @@ class Effect:
     ``sensor``, ``contact``). ``modify(numbers, index, **parameters)`` changes numbers there.
     ``law`` is the function for ``hook``; its parameters are all of ``parameters`` in order.
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
+    ``form``: how far the law may be from that of a machine which does have the effect, as a part
+    of what the effect does: geometry and scales are exact, friction is not, creep least of all.
     """
 
     id: str
@@ -74,6 +76,7 @@ class Effect:
     hook: str = ''
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
+    form: float = 0.025
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

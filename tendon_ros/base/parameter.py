@@ -16,7 +16,8 @@ class Parameter:
     possible. ``typical`` is also the size at which the effect is worth looking for. ``search``
     says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
     recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
-    ``level`` (of the motor's torque), ``share`` (all or nothing); or ``shape``: a shape in spite of its neutral value.
+    ``level`` (of the motor's torque), ``share`` (all or nothing); or ``shape``: a shape in spite
+    of its neutral value.
     """
 
     name: str

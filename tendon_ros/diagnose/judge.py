@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.search import FORM, Found, Rival, tie
+from tendon_ros.diagnose.search import form_power, Found, Rival, tie
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -29,14 +29,16 @@ class Signs:
 
     ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
     channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``ahead``: misfit of the best other candidate in its place, beyond its own, as
-    part of ``worth``; ``causes``: how many there are.
+    causes explain; ``form``: what their laws may leave of that; ``ahead``: misfit of the best
+    other candidate in its place, beyond its own, as part of ``worth``; ``causes``: how many there
+    are.
     """
 
     worth: float
     in_one: float
     left: float
     explained: float
+    form: float
     ahead: float
     causes: int
 
@@ -48,7 +50,7 @@ class Signs:
             [
                 1.0,
                 math.log10(worth),
-                math.log10(min(max(self.left / unexplainable(self.explained), 1e-2), 30.0)),
+                math.log10(min(max(self.left / (LEFT_NOISE + self.form), 1e-2), 30.0)),
                 math.log10(min(max(self.ahead, 1e-3), 1.0)),
                 float(self.causes - 1),
                 math.log10(min(max(self.worth / max(self.explained, 1e-9), 1e-4), 1.0)),
@@ -111,29 +113,20 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     others = [r.fit.cost for r in found.rivals[k] if r.candidate not in equal]
     ahead = (min(others) - final.cost) / samples / worth if others else 1.0
     explained = (found.start.cost - final.cost) / samples
-    return Signs(worth, gains[1], left, explained, ahead, len(final.model.causes))
+    form = form_power(found.start, final)
+    return Signs(worth, gains[1], left, explained, form, ahead, len(final.model.causes))
 
 
-def unexplainable(explained: float) -> float:
-    """
-    Return the structured power that stays although every cause was found.
-
-    :param explained: what all causes explain, in noise power per sample.
-    :return: in the same unit: smoothed motion and encoder counts, and the form of the laws.
-    """
-    return LEFT_NOISE + FORM**2 * explained
-
-
-def left_over(left: float, explained: float) -> float:
+def left_over(left: float, form: float) -> float:
     """
     Return the probability that something of the gap has a cause that was not named.
 
     :param left: structured misfit that stays, in noise power per sample.
-    :param explained: what all causes explain.
+    :param form: what the laws of the causes may leave although they are right.
     :return: 0 to 1.
     """
-    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / unexplainable(explained))))
+    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / (LEFT_NOISE + form))))
 
 
 #: structured power that recordings without any effect leave
-LEFT_NOISE = 0.15
+LEFT_NOISE = 0.12

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tendon_ros.base.errors import TendonError
 from tendon_ros.diagnose.judge import equals
@@ -34,12 +35,13 @@ def next_experiments(
     model = found.final.model
     for k, cause in enumerate(model.causes):
         rivals = equals(problem, cause, found.rivals[k], found.final)[:PAIRS]
-        # with several causes, an experiment that cannot be simulated with all is none
+        others = [c.use(model.values(n)) for n, c in enumerate(model.causes) if n != k]
+        settled = replace(instrument, effects=(*instrument.effects, *others))
         pairs = [((cause, model.values(k)), (r.candidate, r.fit.model.values(-1))) for r in rivals]
         if not pairs:
             continue
         try:
-            suggestions = together(separating(instrument, measured, pairs, jobs))
+            suggestions = together(separating(settled, measured, pairs, jobs))
         except TendonError:
             continue
         worth = [s for s in suggestions if s.seconds <= LONGEST]

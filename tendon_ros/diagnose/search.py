@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import BRISTLE, Fit, Model, Problem
 from tendon_ros.identify.screening import Proposal, Screen
@@ -24,11 +25,9 @@ FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 CORRECTED = 36  # proposals that are judged again at their own size
+CLOSE = 5  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # candidates that are fitted at each step
 MOST = 5  # causes
-#: a law of the catalogue is never quite the law of the machine: what a cause leaves of what it
-#: explained, in amplitude, before another cause is believed
-FORM = 0.08
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.3
@@ -203,9 +202,7 @@ class Search:
         :return: whether it explains more than noise and the form of the other laws can.
         """
         gain, in_one = self.gains(before, after)
-        samples = len(before.left)
-        explained = max(0.0, start.cost - before.cost) / samples
-        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > FORM**2 * explained
+        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > form_power(start, before)
 
     def gains(self, before: Fit, after: Fit) -> tuple[float, float]:
         """
@@ -259,7 +256,9 @@ class Search:
                 without = self.problem.fitted(smaller, known, rounds=6, accuracy=1e-2)
                 without = self.problem.fitted(without.model, rounds=3, accuracy=1e-3)
                 found.without.append(without)
-                rivals = self.fitted(without, self.screened(without, leave=[cause]))
+                screened = self.screened(without, leave=[cause])
+                rivals = self.fitted(without, screened)
+                rivals = self._sharpened(state, without, rivals)
                 found.rivals.append(rivals)
                 better = self._better(state, cause, rivals) if left else None
                 if better is not None:
@@ -267,6 +266,15 @@ class Search:
             if better is None:
                 break
             found.states[-1] = better
+
+    def _sharpened(self, state: Fit, without: Fit, rivals: list[Rival]) -> list[Rival]:
+        """Fit the rivals that come near as carefully as the cause that they challenge."""
+        near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
+        near += tie(self.problem, state) * len(state.left)
+        close = [r for r in rivals if r.fit.cost < near][:CLOSE]
+        fits = list(self._pool.map(lambda r: self._settled(r.fit.model), close))
+        sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
+        return sorted([*sharp, *(r for r in rivals if r not in close)], key=_judged)
 
     def _better(self, state: Fit, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
         """Return a fit with another candidate: one that fits better, or as well and is simpler."""
@@ -283,6 +291,20 @@ class Search:
                 if rival in simple or trial.cost < 0.99 * state.cost:
                     return trial
         return None
+
+
+def form_power(start: Fit, state: Fit) -> float:
+    """
+    Return what the laws of the causes may leave although they are the right ones.
+
+    :param start: without any cause.
+    :param state: with them.
+    :return: in noise power per sample.
+    """
+    if not state.model.causes:
+        return 0.0
+    explained = max(0.0, start.cost - state.cost) / len(state.left)
+    return max(find(c.effect).form for c in state.model.causes) ** 2 * explained
 
 
 def tie(problem: Problem, final: Fit) -> float:

@@ -43,7 +43,7 @@ from tendon_ros.diagnose.result import (
     Unexplained,
     Verdict,
 )
-from tendon_ros.diagnose.search import Found, Search
+from tendon_ros.diagnose.search import form_power, Found, Search
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.fit import Fit, Model, Problem
 from tendon_ros.model.instrument import Instrument
@@ -108,10 +108,10 @@ def diagnose(
     left = search.problem.structured(believed.left)
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    explained = max(0.0, (found.start.cost - believed.cost) / len(believed.left))
+    form = form_power(found.start, believed)
     causes = _causes(heard, search, found, final, accepted, chances)
     places = whereabouts(ready, found, chances, left)
-    beyond = left_over(left, explained)
+    beyond = left_over(left, form)
     gaps = _gaps(heard, final.model)
     repaired = patched(heard.problem, final.model, instrument)
     report('running the patched instrument in closed loop', 0.92)

@@ -53,4 +53,5 @@ EFFECT = Effect(
     hook='budget',
     law=asymmetric_friction_law,
     dissipative=True,
+    form=0.06,
 )

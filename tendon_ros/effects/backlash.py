@@ -67,4 +67,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
+    form=0.06,
 )

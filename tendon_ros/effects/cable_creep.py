@@ -73,4 +73,5 @@ EFFECT = Effect(
     law=cable_creep_law,
     stateful=True,
     dissipative=True,
+    form=0.4,
 )

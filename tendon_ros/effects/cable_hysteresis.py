@@ -61,4 +61,5 @@ EFFECT = Effect(
     law=cable_hysteresis_law,
     stateful=True,
     dissipative=True,
+    form=0.12,
 )

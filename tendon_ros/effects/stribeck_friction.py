@@ -68,4 +68,5 @@ EFFECT = Effect(
     hook='budget',
     law=stribeck_friction_law,
     dissipative=True,
+    form=0.06,
 )

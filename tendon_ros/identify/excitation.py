@@ -8,7 +8,7 @@ stays away, in noise deviations, says which experiment is worth its time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -112,20 +112,6 @@ def together(suggestions: Sequence[Suggestion]) -> list[Suggestion]:
         names = dict.fromkeys(name for s in group for name in s.separates)
         found.append(replace(worst, separates=tuple(names)))
     return sorted(found, key=lambda s: s.order)
-
-
-def as_next_experiment(suggestion: Suggestion) -> Mapping[str, object]:
-    """
-    Return a suggestion as the plain fields of a diagnosis' next experiment.
-
-    :param suggestion: the suggestion.
-    :return: ``separates``, ``do`` and ``add_channel``.
-    """
-    return {
-        'separates': suggestion.separates,
-        'do': suggestion.do,
-        'add_channel': suggestion.add_channel,
-    }
 
 
 def _tried(

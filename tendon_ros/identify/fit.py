@@ -388,6 +388,8 @@ class Problem:
         x = np.clip(x, bounds[:, 0], bounds[:, 1])
         left = self.left(self.unpack(model, x))
         cost = float(left @ left + prior @ x**2)
+        if not math.isfinite(cost):  # the model diverges: nothing to fit from here
+            return Fit(self.unpack(model, x), left, np.zeros((len(left), len(axes))), math.inf)
         labels = self.labels(model)
         slope = np.zeros((len(left), len(axes)))
         fresh = []

@@ -18,6 +18,7 @@ import os
 from pathlib import Path
 import sys
 import tempfile
+from threading import Lock
 from types import ModuleType
 from typing import Any
 
@@ -137,7 +138,16 @@ def _write_atomically(path: Path, text: str) -> None:
     Path(name).replace(path)
 
 
+#: two threads that ask for a new kernel must not be given one that is half loaded
+_LOADING = Lock()
+
+
 def _load(path: Path) -> ModuleType:
+    with _LOADING:
+        return _loaded(path)
+
+
+def _loaded(path: Path) -> ModuleType:
     name = f'tendon_ros_{path.stem}'
     if name in sys.modules:
         return sys.modules[name]
