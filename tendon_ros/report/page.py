@@ -15,6 +15,7 @@ from typing import ClassVar, Literal
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from tendon_ros.base.errors import TendonError
+from tendon_ros.report.blocks import Banner, Block
 
 
 class ReportError(TendonError):
@@ -31,17 +32,27 @@ class Prose:
 
 @dataclass(frozen=True)
 class Picture:
-    """A PNG: ``alt`` says what it shows to whom cannot see it, ``caption`` stands below it."""
+    """
+    A PNG: ``alt`` says what it shows to whom cannot see it, ``caption`` stands below it.
+
+    ``dark`` is the same picture for readers who chose dark pages, where it was drawn.
+    """
 
     kind: ClassVar = 'picture'
     png: bytes
     alt: str
     caption: str = ''
+    dark: bytes = b''
 
     @property
     def uri(self) -> str:
         """The picture itself as an address."""
-        return f'data:image/png;base64,{b64encode(self.png).decode("ascii")}'
+        return _uri(self.png)
+
+    @property
+    def dark_uri(self) -> str:
+        """The dark picture as an address, empty where there is none."""
+        return _uri(self.dark) if self.dark else ''
 
 
 @dataclass(frozen=True)
@@ -50,6 +61,7 @@ class Table:
     A table of text.
 
     ``marks``: one a row, or none at all; ``marked`` is the column whose text takes their colour.
+    ``wraps``: whether text of the first column may break into lines.
     """
 
     kind: ClassVar = 'table'
@@ -58,24 +70,27 @@ class Table:
     caption: str = ''
     marks: tuple[Literal['good', 'bad', ''], ...] = ()
     marked: int = -1
+    wraps: bool = False
 
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands below it."""
+    """A heading and what stands below it; ``anchor`` is a name for links to it."""
 
     title: str
-    blocks: tuple[Prose | Picture | Table, ...]
+    blocks: tuple[Block, ...]
+    anchor: str = ''
 
 
 @dataclass(frozen=True)
 class Page:
-    """A whole page; ``lead`` are the paragraphs at its top."""
+    """A whole page; ``lead`` are the paragraphs at its top, ``banner`` what it has to say."""
 
     title: str
     lead: tuple[str, ...]
     sections: tuple[Section, ...]
     footer: str = ''
+    banner: Banner | None = None
 
 
 def html(page: Page) -> str:
@@ -105,6 +120,10 @@ def markdown(table: Table) -> str:
     lines = (table.header, ('---',) * len(table.header), *table.rows)
     cells = ([cell.replace('|', r'\|') for cell in line] for line in lines)
     return ''.join(f'| {" | ".join(line)} |\n' for line in cells)
+
+
+def _uri(png: bytes) -> str:
+    return f'data:image/png;base64,{b64encode(png).decode("ascii")}'
 
 
 def write(path: Path, content: str | bytes) -> None:

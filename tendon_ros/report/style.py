@@ -32,7 +32,8 @@ PULLEYS: Mapping[str, str] = MappingProxyType(
 WIDTH = 5.2  # [in], 374 points: a phone's screen
 RESOLUTION = 180  # dots per inch
 
-_RC: Any = MappingProxyType(
+#: what matplotlib draws with, for paper
+RC: Any = MappingProxyType(
     {
         'font.size': 11.0,
         'axes.titlesize': 11.0,
@@ -71,7 +72,7 @@ def picture[**P](draw: Callable[P, Figure]) -> Callable[P, bytes]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> bytes:
-        with rc_context(_RC):
+        with rc_context(RC):
             buffer = BytesIO()
             draw(*args, **kwargs).savefig(
                 buffer, format='png', dpi=RESOLUTION, metadata={'Software': None}

@@ -1,0 +1,215 @@
+"""The evidence of a diagnosis as sections: traces, closed loop, candidates, noise, the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from tendon_ros.diagnose.evidence import Evidence, Moved, Trace
+from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Judged
+from tendon_ros.effects import find
+from tendon_ros.report.blocks import Block, Columns, Details, Listing
+from tendon_ros.report.diagnosis_figures import channel_bars, rival_bars
+from tendon_ros.report.diagnosis_traces import rmse, telling, trace_figure, trace_words
+from tendon_ros.report.diagnosis_verdict import in_floors
+from tendon_ros.report.diagnosis_words import (
+    channel_words,
+    count,
+    number,
+    percent,
+    place_words,
+    scale,
+    with_interval,
+    with_unit,
+)
+from tendon_ros.report.page import Picture, Prose, Section, Table
+
+_MOST_RIVALS = 12
+
+
+def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section, ...]:
+    """
+    Return what the report shows below its answers.
+
+    :param diagnosis: the answer.
+    :param evidence: what it rests on.
+    :return: the sections, without those that have nothing to show.
+    """
+    floors = {floor.channel: floor.value for floor in evidence.floors}
+    sections: list[Section] = []
+    if evidence.traces:
+        open_loop = (
+            'The model is driven with the measured motion of the motors and predicts every other '
+            'channel. Shaded: data that no fit has seen.'
+        )
+        blocks = _pictures(evidence.traces, floors, open_loop)
+        sections.append(Section('Measured and predicted', blocks, 'traces'))
+    if diagnosis.closed_loop or evidence.closed_loop:
+        sections.append(_closed_loop(diagnosis, evidence, floors))
+    if evidence.rivals or diagnosis.candidates:
+        sections.append(_considered(diagnosis, evidence))
+    if evidence.floors or evidence.moved:
+        sections.append(_basis(evidence))
+    sections.append(_run(diagnosis, evidence))
+    return tuple(sections)
+
+
+def gap_table(gaps: Sequence[ChannelGap]) -> Table:
+    """
+    Return the gap of each channel in numbers.
+
+    :param gaps: by channel.
+    :return: a row each: RMSE in the channel's unit and by its noise floor.
+    """
+    header = (
+        'channel',
+        'before',
+        'after',
+        '95 %',
+        'noise floor',
+        'before / floor',
+        'after / floor',
+    )
+    rows = []
+    for gap in gaps:
+        factor, unit = scale(gap.unit, max(gap.before, gap.after))
+        after, interval = with_interval(factor * gap.after, _scaled(gap.ci95, factor), '1')
+        rows.append(
+            (
+                channel_words(gap.channel),
+                f'{number(factor * gap.before, 3)} {unit}',
+                f'{after} {unit}',
+                interval,
+                f'{number(factor * gap.noise_floor, 3)} {unit}',
+                *(number(x) if gap.noise_floor > 0.0 else '–' for x in in_floors(gap)),
+            )
+        )
+    return Table(header, tuple(rows), 'RMSE on data that no fit has seen.')
+
+
+def _pictures(
+    traces: Sequence[Trace], floors: Mapping[str, float], text: str
+) -> tuple[Block, ...]:
+    shown = telling(traces, floors)
+    if len(shown) < len(traces):
+        text += f' Of {len(traces)} traces, the {len(shown)} that show most; the rest in numbers.'
+    pictures = []
+    for trace in shown:
+        light, dark = trace_figure(trace, floors.get(trace.channel))
+        before, after = rmse(trace)
+        factor, unit = scale(trace.unit, max(before, after))
+        caption = f'RMSE {number(factor * before, 3)} → {number(factor * after, 3)}\u00a0{unit}'
+        alt = f'{trace_words(trace)}: measured, predicted before and after, and what remains'
+        pictures.append(Picture(light, alt, caption, dark))
+    blocks: list[Block] = [Prose(text), Columns(tuple(pictures))]
+    if len(shown) < len(traces):
+        blocks.append(Details('Every trace in numbers', (_trace_table(traces),)))
+    return tuple(blocks)
+
+
+def _trace_table(traces: Sequence[Trace]) -> Table:
+    rows = []
+    for trace in traces:
+        before, after = (with_unit(x, trace.unit, 3) for x in rmse(trace))
+        rows.append((trace.recording, channel_words(trace.channel), before, after))
+    return Table(('recording', 'channel', 'RMSE before', 'after'), tuple(rows), wraps=True)
+
+
+def _closed_loop(diagnosis: Diagnosis, evidence: Evidence, floors: Mapping[str, float]) -> Section:
+    text = (
+        'The command drives the simulated instrument and its controllers: the gap that a user of '
+        'the simulator sees.'
+    )
+    blocks: list[Block] = [Prose(text)]
+    if diagnosis.closed_loop:
+        blocks.append(channel_bars(diagnosis.closed_loop, 'Channel by channel, closed loop'))
+        blocks.append(Details('The same in numbers', (gap_table(diagnosis.closed_loop),)))
+    if evidence.closed_loop:
+        blocks += _pictures(
+            evidence.closed_loop, floors, 'The same command, measured and simulated.'
+        )
+    return Section('Closed loop', tuple(blocks), 'closed-loop')
+
+
+def _considered(diagnosis: Diagnosis, evidence: Evidence) -> Section:
+    blocks: list[Block] = []
+    named = {(cause.effect, cause.place) for cause in diagnosis.causes}
+    if evidence.rivals:
+        blocks.append(rival_bars(evidence.rivals, named, _MOST_RIVALS))
+    hidden = [c for c in diagnosis.candidates if not c.identifiable]
+    if hidden:
+        said = f'{count(len(hidden), "candidate")} that these data cannot show'
+        title = f'{said}: present or not, they leave too little trace.'
+        blocks.append(Table(('effect', 'places', 'why not'), _grouped(hidden), title, wraps=True))
+    visible = [c for c in diagnosis.candidates if c.identifiable]
+    if visible:
+        said = f'{count(len(visible), "candidate")} that these data would have shown'
+        rows = _by_probability(visible)
+        table = Table(('effect', 'places', 'probability'), rows, wraps=True)
+        blocks.append(Details(said, (table,)))
+    return Section('What was considered', tuple(blocks), 'considered')
+
+
+def _grouped(hidden: Iterable[Judged]) -> tuple[tuple[str, str, str], ...]:
+    """Return a row for each effect and reason, with all its places."""
+    places: dict[tuple[str, str], list[str]] = {}
+    for judged in hidden:
+        places.setdefault((judged.effect, judged.why_not), []).append(judged.place)
+    return tuple(
+        (find(effect).title, ', '.join(map(place_words, at)), why or 'no reason was given')
+        for (effect, why), at in places.items()
+    )
+
+
+def _by_probability(visible: Iterable[Judged]) -> tuple[tuple[str, str, str], ...]:
+    """Return a row for each effect and probability, the likeliest first."""
+    places: dict[tuple[str, str], list[str]] = {}
+    for judged in sorted(visible, key=lambda c: -c.probability):
+        places.setdefault((judged.effect, percent(judged.probability)), []).append(judged.place)
+    return tuple(
+        (find(effect).title, ', '.join(map(place_words, at)), probability)
+        for (effect, probability), at in places.items()
+    )
+
+
+def _basis(evidence: Evidence) -> Section:
+    blocks: list[Block] = []
+    if evidence.floors:
+        rows = tuple(
+            (channel_words(f.channel), with_unit(f.value, f.unit), f.how) for f in evidence.floors
+        )
+        title = 'Noise floors: what no model could do better than.'
+        blocks.append(Table(('channel', 'floor', 'how it was found'), rows, title, wraps=True))
+    if evidence.moved:
+        header = ('number', 'place', 'moved', '95 % interval')
+        title = 'Numbers of the instrument file that moved within their tolerances.'
+        moved = tuple(_moved(number) for number in evidence.moved)
+        blocks.append(Table(header, moved, title, wraps=True))
+    return Section('Noise and tolerances', tuple(blocks), 'basis')
+
+
+def _moved(moved: Moved) -> tuple[str, str, str, str]:
+    value, interval = with_interval(moved.value, moved.ci95, moved.unit)
+    sign = '' if value.startswith('−') else '+'
+    by = f'× {value}' if moved.unit in ('', '1') else f'{sign}{value}'
+    return moved.quantity, place_words(moved.place), by, interval
+
+
+def _run(diagnosis: Diagnosis, evidence: Evidence) -> Section:
+    blocks: list[Block] = [
+        Prose(
+            f'{count(len(evidence.recordings), "recording")}: {", ".join(evidence.recordings)}. '
+            f'Instrument: {evidence.instrument}. Time: {number(evidence.seconds, 2)} s.'
+        ),
+        Prose(
+            'Beside this page: diagnosis.json has the same in numbers; instrument.yaml is the '
+            'instrument file with the named effects, as simulator, estimator and diagnosis take '
+            'it.'
+        ),
+    ]
+    if diagnosis.left_out:
+        blocks += [Prose('Left out:'), Listing(diagnosis.left_out)]
+    return Section('About this run', tuple(blocks), 'run')
+
+
+def _scaled(ci95: tuple[float, float], factor: float) -> tuple[float, float]:
+    return factor * ci95[0], factor * ci95[1]

@@ -1,0 +1,237 @@
+"""The page of a diagnosis: the verdict, then where, which and how far, then the evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tendon_ros import __version__
+from tendon_ros.diagnose.evidence import Evidence
+from tendon_ros.diagnose.result import Cause, Diagnosis
+from tendon_ros.effects import find
+from tendon_ros.report.blocks import (
+    Banner,
+    Block,
+    Card,
+    Columns,
+    Details,
+    Listing,
+    Tile,
+    Tone,
+)
+from tendon_ros.report.diagnosis_evidence import evidence_sections, gap_table
+from tendon_ros.report.diagnosis_figures import (
+    cause_bars,
+    channel_bars,
+    OTHER,
+    step_bars,
+    where_map,
+    worth_bars,
+)
+from tendon_ros.report.diagnosis_verdict import (
+    headline,
+    in_floors,
+    LABELS,
+    overall,
+    UNIT,
+    where_words,
+    worth,
+)
+from tendon_ros.report.diagnosis_words import (
+    channel_words,
+    count,
+    effect_words,
+    inside,
+    joined,
+    number,
+    percent,
+    place_words,
+    with_interval,
+)
+from tendon_ros.report.page import html, Page, Prose, Section, Table
+
+_TONES: Mapping[str, Tone] = {
+    'no_gap': 'good',
+    'explained': 'good',
+    'partly_explained': 'fair',
+    'unexplained': 'bad',
+}
+_LIKELY = 0.5  # below that, where something unknown might lie says nothing
+_CLEARLY = 1.3  # noise deviations above which a channel is said to be off
+
+
+def diagnosis_page(diagnosis: Diagnosis, evidence: Evidence) -> str:
+    """
+    Return the report of a diagnosis.
+
+    :param diagnosis: the answer.
+    :param evidence: what it rests on.
+    :return: the HTML of a self-contained file.
+    """
+    sections = [_which(diagnosis), _how_far(diagnosis, evidence)]
+    if diagnosis.where:
+        sections.insert(0, _where(diagnosis))
+    if diagnosis.verdict != 'no_gap':
+        sections.append(_rest(diagnosis))
+    if diagnosis.next_experiment:
+        sections.append(_next(diagnosis))
+    page = Page(
+        f'Sim-to-real gap of {evidence.instrument}',
+        (_data(diagnosis, evidence),),
+        (*sections, *evidence_sections(diagnosis, evidence)),
+        f'Made by tendon diagnose, tendon_ros {__version__}.',
+        Banner(
+            LABELS[diagnosis.verdict],
+            headline(diagnosis),
+            UNIT,
+            _TONES[diagnosis.verdict],
+            _tiles(diagnosis),
+        ),
+    )
+    return html(page)
+
+
+def _data(diagnosis: Diagnosis, evidence: Evidence) -> str:
+    names = evidence.recordings
+    shown = ', '.join(names[:4]) + (', …' if len(names) > 4 else '')
+    text = f'{count(len(names), "recording")} ({shown}), {count(len(diagnosis.gap), "channel")}.'
+    if diagnosis.left_out:
+        text += ' Some data was left out: see About this run.'
+    return text
+
+
+def _tiles(diagnosis: Diagnosis) -> tuple[Tile, ...]:
+    before, after = (number(x) for x in overall(diagnosis))
+    where = ('nowhere', 'no place stands out')
+    if diagnosis.where and diagnosis.verdict != 'no_gap':
+        where = where_words(diagnosis.where)
+    if diagnosis.causes:
+        first, *others = diagnosis.causes
+        which = effect_words(first.effect, first.place)
+        text = percent(first.probability)
+        if first.indistinguishable:
+            text += f', or {count(len(first.indistinguishable), "other")} that look the same'
+        if others:
+            text += f', and {count(len(others), "more cause")}'
+    elif diagnosis.verdict == 'no_gap':
+        which, text = 'None', f'{count(len(diagnosis.candidates), "candidate")} weighed'
+    else:
+        which = 'None of the catalogue'
+        text = f'{percent(diagnosis.unexplained.probability)} that it is something else'
+    far, unit = f'{before} → {after}', 'noise deviations; the floor is 1'
+    if diagnosis.verdict == 'no_gap':
+        far = before
+    return (
+        Tile('WHERE', where[0][:1].upper() + where[0][1:], where[1], _anchor(diagnosis)),
+        Tile('WHICH', which, text, 'which'),
+        Tile('HOW FAR', far, unit, 'how-far'),
+    )
+
+
+def _anchor(diagnosis: Diagnosis) -> str:
+    return 'where' if diagnosis.where else 'how-far'
+
+
+def _where(diagnosis: Diagnosis) -> Section:
+    place, share = where_words(diagnosis.where)
+    blocks: list[Block] = [Prose(f'{place[:1].upper()}{place[1:]} has most: {share}.')]
+    if diagnosis.verdict == 'no_gap':
+        blocks = [Prose('Of the little that there is, which is noise for the most part:')]
+    figure = where_map(diagnosis.where)
+    blocks.append(figure)
+    if OTHER in (*figure.rows, *figure.columns):
+        header = ('place', 'regime', 'share')
+        rows = tuple((place_words(w.place), w.regime, percent(w.share)) for w in diagnosis.where)
+        blocks.append(Details('Every place and regime', (Table(header, rows),)))
+    return Section('Where it lies', tuple(blocks), 'where')
+
+
+def _which(diagnosis: Diagnosis) -> Section:
+    bars = cause_bars(diagnosis)
+    cards: list[Block] = [_card(diagnosis, cause) for cause in diagnosis.causes]
+    blocks: list[Block] = []
+    if not cards:
+        weighed = count(len(diagnosis.candidates), 'candidate')
+        none = (
+            f'{weighed} of the catalogue, each effect at each place where it can act, were '
+            'weighed. None is named as a cause.'
+        )
+        blocks.append(Prose(none))
+    if len(cards) == 1:
+        blocks.append(Columns((*((bars,) if bars.rows else ()), *cards)))
+    else:
+        blocks += [bars] if bars.rows else []
+        blocks += [Columns(tuple(cards))] if cards else []
+    return Section('Which effects cause it', tuple(blocks), 'which')
+
+
+def _card(diagnosis: Diagnosis, cause: Cause) -> Card:
+    blocks: list[Block] = []
+    known = {p.name: p for p in find(cause.effect).parameters}
+    rows = []
+    for name, found in cause.parameters.items():
+        value, interval = with_interval(found.value, found.ci95, found.unit)
+        if known[name].neutral == 1.0:
+            value = f'× {value}'
+        rows.append((f'{name}: {known[name].meaning}', value, interval))
+    if rows:
+        blocks.append(Table(('parameter', 'value', '95 % interval'), tuple(rows), wraps=True))
+    channel, text = worth(diagnosis, cause)
+    if channel:
+        blocks.append(Prose(f'It shows most in {channel}: {text}.'))
+    same = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
+    if same:
+        blocks.append(Prose(f'These channels cannot tell it from {joined(same)}.'))
+    return Card(effect_words(cause.effect, cause.place), percent(cause.probability), tuple(blocks))
+
+
+def _how_far(diagnosis: Diagnosis, evidence: Evidence) -> Section:
+    blocks: list[Block] = [channel_bars(diagnosis.gap, 'Channel by channel')]
+    steps = [step_bars(evidence.steps)] if evidence.steps and diagnosis.causes else []
+    if diagnosis.causes:
+        steps.append(worth_bars(diagnosis))
+    if diagnosis.gap:
+        blocks.append(Details('The same in numbers', (gap_table(diagnosis.gap),)))
+    if steps:
+        blocks.append(Columns(tuple(steps)))
+    return Section('How far it shrinks', tuple(blocks), 'how-far')
+
+
+def _rest(diagnosis: Diagnosis) -> Section:
+    rest = diagnosis.unexplained
+    text = (
+        f'With a probability of {percent(rest.probability)} something is at work that the '
+        'catalogue does not have.'
+    )
+    if rest.where and rest.probability >= _LIKELY:
+        text += f' What remains lies at {joined(place_words(p) for p in rest.where)}'
+        text += f' ({rest.regime}).' if rest.regime else '.'
+    blocks: list[Block] = [Prose(text)]
+    above = [g for g in diagnosis.gap if in_floors(g)[1] > _CLEARLY]
+    if above:
+        lines = tuple(
+            f'{channel_words(g.channel)}: {number(in_floors(g)[1])} noise deviations remain'
+            for g in sorted(above, key=lambda g: -in_floors(g)[1])
+        )
+        blocks.append(Listing(lines))
+    elif diagnosis.gap:
+        blocks.append(
+            Prose(
+                'No channel is clearly above its noise floor any more: all remain below '
+                f'{number(_CLEARLY)} noise deviations.'
+            )
+        )
+    return Section('What is left', tuple(blocks), 'left')
+
+
+def _next(diagnosis: Diagnosis) -> Section:
+    cards = []
+    for step in diagnosis.next_experiment:
+        blocks: list[Block] = []
+        if step.do:
+            blocks.append(Prose(f'Do: {step.do}'))
+        if step.add_channel:
+            blocks.append(Prose(f'Channel to record: {step.add_channel}'))
+        names = [inside(effect_words(*pair)) for pair in step.separates]
+        title = f'Tells apart {joined(names)}' if len(names) > 1 else f'Shows {joined(names)}'
+        cards.append(Card(title if names else 'To know more', '', tuple(blocks), 'pale'))
+    return Section('Next experiment', (Columns(tuple(cards)),), 'next')

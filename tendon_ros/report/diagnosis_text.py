@@ -1,0 +1,121 @@
+"""The summary of a diagnosis for a terminal: verdict, where, which, how far, what next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from textwrap import wrap
+
+from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
+from tendon_ros.report.diagnosis_verdict import by_place, headline, in_floors, worth
+from tendon_ros.report.diagnosis_words import (
+    channel_words,
+    effect_words,
+    inside,
+    number,
+    percent,
+    place_words,
+    scale,
+    with_interval,
+)
+
+_WIDTH = 96
+_INDENT = 8
+_PLACES, _CAUSES, _CHANNELS, _NEXT = 3, 4, 6, 2
+
+
+def summary(diagnosis: Diagnosis) -> str:
+    """
+    Return what a terminal shows of a diagnosis: some ten to twenty-five lines.
+
+    :param diagnosis: the answer.
+    :return: plain text, lines of at most 96 characters, ending in a newline.
+    """
+    lines = wrap(headline(diagnosis), _WIDTH)
+    if diagnosis.verdict != 'no_gap':
+        lines += _part('where', _where(diagnosis), len(by_place(diagnosis.where)) - _PLACES)
+    which = [line for cause in diagnosis.causes[:_CAUSES] for line in _cause(diagnosis, cause)]
+    lines += _part('which', which, len(diagnosis.causes) - _CAUSES)
+    lines += _part('gap', _channels(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
+    if diagnosis.verdict != 'no_gap':
+        lines += _part('rest', _rest(diagnosis))
+    lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
+    lines += _part('note', [f'left out: {text}' for text in diagnosis.left_out[:3]])
+    # blanks that kept numbers and units on one line have done their work
+    return '\n'.join(lines).replace('\u00a0', ' ') + '\n'
+
+
+def _part(name: str, texts: Sequence[str], more: int = 0) -> list[str]:
+    lines: list[str] = []
+    for text in texts:
+        lines += [text] if '  ' in text else wrap(text, _WIDTH - _INDENT, subsequent_indent='  ')
+    if more > 0:
+        lines.append(f'and {more} more, in the report')
+    head = name.ljust(_INDENT)
+    return [f'{head if k == 0 else " " * _INDENT}{line}' for k, line in enumerate(lines)]
+
+
+def _where(diagnosis: Diagnosis) -> list[str]:
+    texts = []
+    for place, share in list(by_place(diagnosis.where).items())[:_PLACES]:
+        regimes = [w for w in diagnosis.where if w.place == place and w.regime][:3]
+        parts = '; '.join(f'{w.regime} {percent(w.share)}' for w in regimes)
+        texts.append(
+            f'{place_words(place)} {percent(min(share, 1.0))}' + f': {parts}' * bool(parts)
+        )
+    return texts
+
+
+def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
+    values = []
+    for name, found in cause.parameters.items():
+        value, interval = with_interval(found.value, found.ci95, found.unit)
+        values.append(f'{name} {value} ({interval})')
+    words = effect_words(cause.effect, cause.place)
+    yield f'{percent(cause.probability)} {words}: {", ".join(values)}'.rstrip(' :')
+    others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
+    if others:
+        yield f'  these channels cannot tell it from {", ".join(others)}'
+    channel, text = worth(diagnosis, cause)
+    if channel:
+        yield f'  {channel}: {text}'
+
+
+def _channels(gaps: Sequence[ChannelGap]) -> list[str]:
+    if not gaps:
+        return []
+    rows: list[tuple[str, ...]] = [
+        ('channel', 'before', 'after', 'floor', '', 'before/floor', 'after/floor')
+    ]
+    for gap in gaps:
+        factor, unit = scale(gap.unit, max(gap.before, gap.after))
+        rmse = (number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor))
+        rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
+    widths = [max(len(row[k]) for row in rows) for k in range(7)]
+    left = (0, 4)
+    return [
+        '  '.join(
+            cell.ljust(w) if k in left else cell.rjust(w)
+            for k, (cell, w) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _ratio(value: float) -> str:
+    return number(value) if isfinite(value) else '–'
+
+
+def _rest(diagnosis: Diagnosis) -> list[str]:
+    rest = diagnosis.unexplained
+    likely = rest.probability >= 0.5
+    places = ', '.join(place_words(place) for place in rest.where if likely)
+    at = f', at {places}' if places else ''
+    during = f' ({rest.regime})' if rest.regime and likely else ''
+    return [f'{percent(rest.probability)} that none of the known effects is behind it{at}{during}']
+
+
+def _next(do: str, add_channel: str) -> str:
+    if not add_channel or add_channel in do:
+        return do
+    return f'{do}, and record {add_channel}' if do else f'record {add_channel}'

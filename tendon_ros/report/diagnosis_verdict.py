@@ -1,0 +1,170 @@
+"""The verdict of a diagnosis in a sentence with numbers, and the sums that it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis, Where
+from tendon_ros.report.diagnosis_words import (
+    channel_words,
+    count,
+    effect_words,
+    inside,
+    joined,
+    number,
+    percent,
+    place_words,
+    scale,
+)
+
+#: the verdict as a label
+LABELS: Mapping[str, str] = {
+    'no_gap': 'No gap',
+    'explained': 'Explained',
+    'partly_explained': 'Partly explained',
+    'unexplained': 'Unexplained',
+}
+
+#: what the numbers of a verdict count in
+UNIT = (
+    'One noise deviation is the noise floor of a channel: as good as it gets. All gaps are on '
+    'data that no fit has seen.'
+)
+
+_NAMED = 3  # more effects than that make a sentence unreadable
+
+
+def overall(diagnosis: Diagnosis) -> tuple[float, float]:
+    """Return the gap before and after, over all channels, in noise standard deviations."""
+    known = [in_floors(g) for g in diagnosis.gap if g.noise_floor > 0.0]
+    if not known:
+        return 0.0, 0.0
+    before, after = np.sqrt(np.mean(np.square(known), axis=0))
+    return float(before), float(after)
+
+
+def in_floors(gap: ChannelGap) -> tuple[float, float]:
+    """Return a channel's gap before and after by its noise floor, infinite without one."""
+    if gap.noise_floor > 0.0:
+        return gap.before / gap.noise_floor, gap.after / gap.noise_floor
+    return np.inf, np.inf
+
+
+def by_place(where: tuple[Where, ...]) -> dict[str, float]:
+    """Return the share of each place over all regimes, most first."""
+    sums: dict[str, float] = {}
+    for entry in where:
+        sums[entry.place] = sums.get(entry.place, 0.0) + entry.share
+    return dict(sorted(sums.items(), key=lambda item: -item[1]))
+
+
+def where_words(where: tuple[Where, ...]) -> tuple[str, str]:
+    """
+    Return where most of the gap lies.
+
+    :param where: shares by place and regime, not empty.
+    :return: the place, and its share with the regime that weighs most there.
+    """
+    place, share = next(iter(by_place(where).items()))
+    most = max((w for w in where if w.place == place), key=lambda w: w.share)
+    text = f'{percent(min(share, 1.0))} of the gap'
+    if most.regime and sum(w.place == place for w in where) > 1:
+        text += f', mostly {most.regime}'
+    elif most.regime:
+        text += f', {most.regime}'
+    return place_words(place), text
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """
+    Return the verdict in a sentence.
+
+    :param diagnosis: the answer.
+    :return: plain text with numbers.
+    """
+    before, after = (number(x) for x in overall(diagnosis))
+    if diagnosis.verdict == 'no_gap':
+        return _no_gap(diagnosis)
+    if diagnosis.verdict == 'explained' and diagnosis.causes:
+        return (
+            f'The gap of {before} noise deviations is explained by '
+            f'{_named(diagnosis.causes)}; it shrinks to {after}.'
+        )
+    lies = ''
+    if diagnosis.where:
+        place, share = where_words(diagnosis.where)
+        lies = f' The largest part lies at {place} ({share}).'
+    if not diagnosis.causes:
+        return f'Nothing in the catalogue explains the gap of {before} noise deviations.{lies}'
+    named = _named(diagnosis.causes)
+    does = 'explains' if len(diagnosis.causes) == 1 else 'explain'
+    if diagnosis.verdict == 'unexplained':
+        return (
+            f'The gap of {before} noise deviations stays unexplained: {named} {does} too little '
+            f'of it or too uncertainly, {after} remain.{lies}'
+        )
+    rest = [place_words(place) for place in diagnosis.unexplained.where[:2]]
+    at = f' at {joined(rest)}' if rest else ''
+    during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
+    return (
+        f'{named[:1].upper()}{named[1:]} {does} part of the gap: it shrinks from {before} to '
+        f'{after} noise deviations. The rest{at}{during} is of no known cause.'
+    )
+
+
+def _no_gap(diagnosis: Diagnosis) -> str:
+    channels = count(len(diagnosis.gap), 'channel')
+    if not diagnosis.gap:
+        return 'No gap: no channel disagrees with the model.'
+    worst = max(diagnosis.gap, key=lambda g: in_floors(g)[0])
+    name, off = channel_words(worst.channel), number(in_floors(worst)[0])
+    if len(diagnosis.gap) == 1:
+        return f'No gap: {name} is off by {off} noise deviations.'
+    return (
+        f'No gap: the model predicts all {channels} to within their noise; the worst, '
+        f'{name}, is off by {off} noise deviations.'
+    )
+
+
+def _named(causes: tuple[Cause, ...]) -> str:
+    said = [_cause(cause) for cause in causes[:_NAMED]]
+    if len(causes) > _NAMED:
+        return f'{count(len(causes), "effect")}, first of all {joined(said)}'
+    return joined(said)
+
+
+def _cause(cause: Cause) -> str:
+    text = inside(effect_words(cause.effect, cause.place))
+    others = cause.indistinguishable
+    if len(others) == 1:
+        text += f' or {inside(effect_words(others[0].effect, others[0].place))}'
+    elif others:
+        text += f' or one of {len(others)} that look the same'
+    return f'{text} ({percent(cause.probability)})'
+
+
+def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:
+    """
+    Return what a cause is worth in the channel where it shows most.
+
+    :param diagnosis: the answer that the cause is part of.
+    :param cause: an accepted effect.
+    :return: the channel, and its RMSE without and with the cause; empty where none was judged.
+    """
+    shrink = cause.shrink
+    if not shrink.channel:
+        return '', ''
+    factor, unit = scale(shrink.unit, max(shrink.without_this, shrink.after))
+    values = [number(factor * x, 3) for x in (shrink.without_this, shrink.after)]
+    text = f'{values[0]} {unit} RMSE without it, {values[1]} with it'
+    floor = floor_of(diagnosis, shrink.channel)
+    if floor > 0.0:
+        text += f' (noise floor {number(factor * floor, 3)})'
+    return channel_words(shrink.channel), text
+
+
+def floor_of(diagnosis: Diagnosis, channel: str) -> float:
+    """Return the noise floor of a channel in its unit, 0 where it is not known."""
+    return next((g.noise_floor for g in diagnosis.gap if g.channel == channel), 0.0)

@@ -1,0 +1,92 @@
+"""The verdict is one sentence with numbers; the terminal gets it with the rest in few lines."""
+
+import pytest
+
+from tendon_ros.report.diagnosis_text import summary
+from tendon_ros.report.diagnosis_verdict import headline, overall, worth
+
+SENTENCES = {
+    'no_gap': (
+        'No gap: the model predicts all 4 channels to within their noise; the worst, '
+        'pulley 3 angle, is off by 1.1 noise deviations.'
+    ),
+    'one_cause': (
+        'The gap of 6.3 noise deviations is explained by tension-proportional friction on '
+        'pulley 3 (97 %); it shrinks to 1.1.'
+    ),
+    'three_causes': (
+        'The gap of 5.5 noise deviations is explained by tension-proportional friction on '
+        'pulley 3 (97 %), pretension of cable L3 or one of 2 that look the same (91 %) and '
+        'Stribeck friction on pulley 1 (78 %); it shrinks to 1.1.'
+    ),
+    'partly': (
+        'Tension-proportional friction on pulley 3 (97 %) and Stribeck friction on pulley 1 '
+        '(78 %) explain part of the gap: it shrinks from 19 to 3.3 noise deviations. The rest at '
+        'pulley 2 and cable 12 (fast motion) is of no known cause.'
+    ),
+    'unexplained': (
+        'Nothing in the catalogue explains the gap of 7.6 noise deviations. The largest part '
+        'lies at pulley 3 (64 % of the gap, mostly reversal).'
+    ),
+}
+
+
+@pytest.mark.parametrize('name', SENTENCES)
+def test_headline(case, name):
+    assert headline(case(name)[0]).replace('\u00a0', ' ') == SENTENCES[name]
+
+
+def test_doubtful_cause_does_not_explain(case):
+    unexplained, _ = case('unexplained')
+    doubtful = case('one_cause')[0].causes[0].model_copy(update={'probability': 0.3})
+    text = headline(unexplained.model_copy(update={'causes': (doubtful,)}))
+    assert 'stays unexplained' in text
+    assert 'is explained by' not in text
+    assert '30\u00a0%' in text
+
+
+def test_many_causes_stay_a_sentence(case):
+    diagnosis, _ = case('three_causes')
+    many = diagnosis.model_copy(update={'causes': diagnosis.causes * 3})
+    assert 'explained by 9 effects, first of all tension-proportional' in headline(many)
+    assert len(summary(many).splitlines()) <= 35
+
+
+def test_gap_over_all_leaves_out_channels_without_a_floor(case):
+    diagnosis, _ = case('one_cause')
+    blind = diagnosis.gap[0].model_copy(update={'noise_floor': 0.0})
+    both = diagnosis.model_copy(update={'gap': (*diagnosis.gap, blind)})
+    assert overall(both) == pytest.approx((6.3, 1.1))
+    assert overall(diagnosis.model_copy(update={'gap': (blind,)})) == (0.0, 0.0)
+    assert '–' in summary(both)
+
+
+def test_worth_is_in_the_channel_where_it_shows(case):
+    diagnosis, _ = case('one_cause')
+    channel, text = worth(diagnosis, diagnosis.causes[0])
+    assert channel == 'motor M torque'
+    assert text == '39.8 mN·m RMSE without it, 9.13 with it (noise floor 8.30)'
+    shrink = diagnosis.causes[0].shrink.model_copy(update={'channel': ''})
+    nowhere = diagnosis.causes[0].model_copy(update={'shrink': shrink})
+    assert worth(diagnosis, nowhere) == ('', '')
+
+
+def test_summary_fits_a_terminal(case, any_name):
+    diagnosis, _ = case(any_name)
+    lines = summary(diagnosis).splitlines()
+    assert 5 <= len(lines) <= 25
+    assert max(map(len, lines)) <= 96
+    assert not any('\u00a0' in line for line in lines)
+    said = ' '.join(' '.join(lines).split())
+    for cause in diagnosis.causes:
+        for name in cause.parameters:
+            assert f'{name} ' in said
+
+
+def test_summary_tells_what_is_left_and_what_is_next(case):
+    said = summary(case('partly')[0])
+    assert '88 % that none of the known effects is behind it, at pulley 2, cable 12' in said
+    assert 'next    move motor L freely' in said
+    assert 'record\n          pulley/pulley_1/position' in said
+    assert 'left out: free: 0.4 s' in said
+    assert 'none of the known effects' not in summary(case('no_gap')[0])
