@@ -6,7 +6,7 @@ SHELL := /bin/bash
 GRASPER ?= $(firstword $(wildcard ../shared/recordings/davinci_grasper/*.npz))
 PY := .venv/bin/python
 READY := .venv/.ready
-EXECUTABLES := tendon simulator estimator trajectory recorder
+EXECUTABLES := tendon simulator estimator trajectory recorder monitor
 
 # Messages stay on this machine, and a field of the wrong type is an error instead of garbage.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST

@@ -101,6 +101,7 @@ setup(
             'estimator = tendon_ros.nodes.estimator:main',
             'trajectory = tendon_ros.nodes.trajectory:main',
             'recorder = tendon_ros.nodes.recorder:main',
+            'monitor = tendon_ros.nodes.monitor:main',
         ],
     },
 )

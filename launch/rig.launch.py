@@ -1,7 +1,8 @@
 """
-Simulator, estimator and trajectory; each a process of its own, or all in one.
+Simulator, estimator and trajectory; each a process of its own, or all in one; a monitor beside.
 
 ros2 launch tendon_ros rig.launch.py in_one:=true params:=/path/to/rig.yaml namespace:=instrument
+ros2 launch tendon_ros rig.launch.py monitor:=true
 """
 
 import sys
@@ -20,17 +21,20 @@ def generate_launch_description() -> LaunchDescription:
     params = LaunchConfiguration('params')
     namespace = LaunchConfiguration('namespace')
     in_one = LaunchConfiguration('in_one')
-    nodes = [
-        Node(
-            package='tendon_ros',
-            executable=name,
-            name=name,
-            namespace=namespace,
-            parameters=[params],
-            output='screen',
-        )
-        for name in ('simulator', 'estimator', 'trajectory')
-    ]
+    nodes, [monitor] = (
+        [
+            Node(
+                package='tendon_ros',
+                executable=name,
+                name=name,
+                namespace=namespace,
+                parameters=[params],
+                output='screen',
+            )
+            for name in names
+        ]
+        for names in (('simulator', 'estimator', 'trajectory'), ('monitor',))
+    )
     together = ExecuteProcess(
         cmd=[
             *(sys.executable, '-m', 'tendon_ros.nodes.in_one', '--ros-args'),
@@ -52,7 +56,11 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 'in_one', default_value='false', description='run the nodes in one process'
             ),
+            DeclareLaunchArgument(
+                'monitor', default_value='false', description='watch measurement and model too'
+            ),
             GroupAction(nodes, condition=UnlessCondition(in_one)),
+            GroupAction([monitor], condition=IfCondition(LaunchConfiguration('monitor'))),
             together,
         ]
     )

@@ -7,11 +7,12 @@ import yaml
 
 from tendon_ros.base.resources import config_path
 from tendon_ros.model.instrument_file import load_instrument
-from tendon_ros.nodes import estimator, recorder, simulator, trajectory
+from tendon_ros.nodes import estimator, monitor, recorder, simulator, trajectory
 from tendon_ros.nodes.effect_settings import effect_settings
 from tendon_ros.nodes.settings import checked
 
-PROGRAMS = {m.PROGRAM.name: m.PROGRAM for m in (simulator, estimator, trajectory, recorder)}
+NODES = (simulator, estimator, trajectory, recorder, monitor)
+PROGRAMS = {module.PROGRAM.name: module.PROGRAM for module in NODES}
 PAGE = Path(__file__).parents[2] / 'docs' / 'nodes.md'
 
 

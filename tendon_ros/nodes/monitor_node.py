@@ -1,0 +1,202 @@
+"""The node behind ``monitor``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+import math
+from pathlib import Path
+import threading
+import time
+
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from tendon_ros.bags.topics import JOINT_TOPICS, place_of
+from tendon_ros.base.errors import TendonError
+from tendon_ros.diagnose.watch import Watch, WatchReport, WatchSettings
+from tendon_ros.diagnose.watch_gap import gap_after
+from tendon_ros.estimate import Measurement
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.nodes.conversions import from_stamp, values_of
+from tendon_ros.nodes.diagnostics import Level
+from tendon_ros.nodes.monitor import PROGRAM
+from tendon_ros.nodes.monitor_status import channels, whole
+from tendon_ros.nodes.settings import SettingError, Value
+from tendon_ros.nodes.tendon_node import TendonNode
+
+type Message = JointState | WrenchStamped
+
+#: a stream that pauses for so long has stopped [s]
+STALE = 1.0
+
+#: measurements that may wait while the machine is busy: none shall be left out
+DEPTH = 500
+
+#: how often the thread that compares looks whether a window is full [s]
+NAP = 0.05
+
+
+class MonitorNode(TendonNode):
+    """
+    Compares what is measured with the model, in a thread beside the callbacks.
+
+    :param given: parameters that the command line sets.
+    """
+
+    def __init__(self, given: Mapping[str, Value]) -> None:
+        super().__init__(PROGRAM.name, given)
+        values = self.declare(PROGRAM.settings)
+        self.refuse_unknown_parameters()
+        instrument = load_instrument(str(values['instrument']))
+        self._watch = Watch(instrument, _watch_settings(values))
+        self._screen_period = float(values['screen_period'])
+        self.get_logger().info(
+            f'preparing {instrument.name}; the first start of a network may compile for some '
+            'twenty seconds'
+        )
+        start = time.monotonic()
+        self._watch.rehearse()
+        for note in self._watch.notes:
+            self.get_logger().warning(note)
+        self._anew = threading.Event()
+        self._screened_at = -math.inf
+        self._warned = False
+        self._busy = 0.0
+        self._counted_at = time.monotonic()
+        self._arrived: dict[str, float] = {}
+        self._channels: dict[str, list[str]] = {}
+        for sensor in instrument.sensors:
+            self._channels.setdefault(place_of(sensor.channel)[0], []).append(sensor.channel)
+        self._joints = {
+            'actuator': [f'pulley_{name}' for name in instrument.driven],
+            'pulley': [f'pulley_{name}' for name in instrument.inner],
+        }
+        for topic in sorted(self._channels):
+            kind = JointState if topic in JOINT_TOPICS else WrenchStamped
+            self.create_subscription(kind, topic, self._hearer(topic), DEPTH)
+        self.create_service(Trigger, '~/reset', self._on_reset)
+        self._thread = threading.Thread(target=self._work, name='watch')
+        self.get_logger().info(
+            f'ready after {time.monotonic() - start:.1f} s, listening to '
+            f'{", ".join(sorted(self._channels))}'
+        )
+
+    def begin(self) -> None:
+        """Start to compare."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop comparing."""
+        super().close()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def health(self) -> tuple[Level, str, Mapping[str, object]]:
+        """Return what the last look showed, and publish what it showed of each channel."""
+        now = time.monotonic()
+        load, self._busy = self._busy / (now - self._counted_at), 0.0
+        self._counted_at = now
+        report = self._watch.report
+        silent = self._silent(now)
+        name = self.get_fully_qualified_name().lstrip('/')
+        self._diagnostics.publish(channels(report, silent, name, time.time_ns()))
+        level, text, details = whole(report)
+        details['load of comparing'] = load
+        if self._watch.strangers:
+            details['unknown joints'] = ', '.join(self._watch.strangers)
+        missing = self._watch.missing
+        if missing:
+            level = Level.ERROR
+            text = (
+                f'no measurement of {", ".join(missing)} yet; the model of '
+                f'{self._watch.instrument.name} is driven with it'
+            )
+        elif not self._thread.is_alive():
+            level, text = Level.ERROR, 'nothing is compared any more; see the log, start it anew'
+        elif silent:
+            level, text = Level.ERROR, next(iter(silent.values()))
+        return level, text, details
+
+    def _silent(self, now: float) -> dict[str, str]:
+        """Return the channels of topics that have stopped, with sentences."""
+        return {
+            channel: f'{topic}: nothing for {now - at:.1f} s; see whether its driver still runs'
+            for topic, at in self._arrived.items()
+            if now - at > STALE
+            for channel in self._channels[topic]
+        }
+
+    def _hearer(self, topic: str) -> Callable[[Message], None]:
+        """Return the callback of a topic; it only keeps what it is given."""
+        joints = self._joints.get(JOINT_TOPICS.get(topic, ''), [])
+
+        def on_message(message: Message) -> None:
+            try:
+                values = values_of(topic, message, joints)
+                self._watch.update(Measurement(from_stamp(message.header.stamp), values))
+                self._arrived[topic] = time.monotonic()
+            except TendonError as error:
+                kind, text = 'measurements left out', str(error)
+                if 'before the last one' in text:
+                    kind = 'stamps that step back'
+                    text += f'; call {self.get_fully_qualified_name()}/reset to begin anew'
+                self.complain(kind, f'{topic}: {text}')
+
+        return on_message
+
+    def _work(self) -> None:
+        """Compare whenever a window is full."""
+        while not self.stopping.wait(NAP):
+            if self._anew.is_set():
+                self._anew.clear()
+                self._watch.reset()
+            if self._watch.due:
+                self._look()
+
+    def _look(self) -> None:
+        begin = time.thread_time()
+        report = self._watch.look()
+        if report.grown and time.monotonic() - self._screened_at > self._screen_period:
+            report = self._watch.suspect()
+            self._screened_at = time.monotonic()
+        if not report.grown:
+            self._screened_at = -math.inf
+        self._busy += time.thread_time() - begin
+        self._say(report)
+
+    def _say(self, report: WatchReport) -> None:
+        """Log when a gap grows, and when it is small again."""
+        grown = bool(report.grown)
+        if grown and not self._warned:
+            self.get_logger().warning(whole(report)[1])
+        elif self._warned and not grown:
+            self.get_logger().info('the gap is again no more than what is explained')
+        self._warned = grown
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        # by the thread that compares, which may be in the middle of it
+        self._anew.set()
+        self._arrived.clear()
+        response.success = True
+        response.message = 'begins anew'
+        return response
+
+
+def _watch_settings(values: Mapping[str, Value]) -> WatchSettings:
+    """Return how to watch, by the node's parameters."""
+    window, warm_up = float(values['window']), float(values['warm_up'])
+    if warm_up > 0.7 * window:
+        raise SettingError(
+            f'parameter warm_up: {warm_up:g} s leave nothing of a window of {window:g} s; give at '
+            f'most {0.7 * window:g}'
+        )
+    path = str(values['diagnosis'])
+    return WatchSettings(
+        window=window,
+        warm_up=warm_up,
+        period=float(values['period']),
+        warn_ratio=float(values['warn_ratio']),
+        learn=float(values['learn']),
+        explained=gap_after(Path(path)) if path else {},
+    )
