@@ -53,8 +53,8 @@ def closed_loop_gap(
     floors: dict[str, list[FloatArray]] = {}
     for recording, segment in zip(recordings, segments, strict=True):
         names = [channel_name('setpoint', f'pulley_{p}', 'position') for p in before.driven]
-        if any(name not in recording for name in names):
-            continue
+        if segment.pushed or any(name not in recording for name in names):
+            continue  # what pushed back is no part of the model, nor is who commanded nothing
         try:
             first = _run(recording, segment, before, names)
             second = _run(recording, segment, after, names)

@@ -39,6 +39,8 @@ BoolArray = NDArray[np.bool_]
 BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument remembers a disturbance
 #: part of the contact force's power that a wall of the file may get wrong and be there after all
 NO_WALL = 0.6
+#: part that a load which truly pushes leaves of what the other channels have against its absence
+FELT = 0.8
 KEPT = 4  # of so many blocks in a row one fewer is fitted
 WHOLE = 6  # recordings from which on whole ones are held out
 
@@ -138,7 +140,12 @@ def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> S
     if force > NO_WALL:
         pushed = loaded(instrument, recording, segment)
         if pushed is not None and pushed.measured:
-            return _posed(instrument, pushed)
+            pushed = _posed(instrument, pushed)
+            # the noise or the bias of a cell that touches nothing has no wall either
+            others = _misfits(instrument, pushed)
+            before = sum(m for c, m in _misfits(instrument, best).items() if c in others)
+            if sum(others.values()) < FELT * before:
+                return pushed
     return best
 
 
