@@ -24,6 +24,7 @@ from tendon_ros.report.diagnosis_words import (
 from tendon_ros.report.page import Picture, Prose, Section, Table
 
 _MOST_RIVALS = 12
+_OPEN, _CLOSED = 6, 2  # pictures of traces: more would bury the telling ones
 
 
 def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section, ...]:
@@ -41,7 +42,7 @@ def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section
             'The model is driven with the measured motion of the motors and predicts every other '
             'channel. Shaded: data that no fit has seen.'
         )
-        blocks = _pictures(evidence.traces, floors, open_loop)
+        blocks = _pictures(evidence.traces, floors, open_loop, _OPEN)
         sections.append(Section('Measured and predicted', blocks, 'traces'))
     if diagnosis.closed_loop or evidence.closed_loop:
         sections.append(_closed_loop(diagnosis, evidence, floors))
@@ -71,7 +72,7 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
     )
     rows = []
     for gap in gaps:
-        factor, unit = scale(gap.unit, max(gap.before, gap.after))
+        factor, unit = scale(gap.unit, gap.after)
         after, interval = with_interval(factor * gap.after, _scaled(gap.ci95, factor), '1')
         rows.append(
             (
@@ -87,16 +88,16 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
 
 
 def _pictures(
-    traces: Sequence[Trace], floors: Mapping[str, float], text: str
+    traces: Sequence[Trace], floors: Mapping[str, float], text: str, most: int
 ) -> tuple[Block, ...]:
-    shown = telling(traces, floors)
+    shown = telling(traces, floors, most)
     if len(shown) < len(traces):
         text += f' Of {len(traces)} traces, the {len(shown)} that show most; the rest in numbers.'
     pictures = []
     for trace in shown:
         light, dark = trace_figure(trace, floors.get(trace.channel))
         before, after = rmse(trace)
-        factor, unit = scale(trace.unit, max(before, after))
+        factor, unit = scale(trace.unit, after)
         caption = f'RMSE {number(factor * before, 3)} → {number(factor * after, 3)}\u00a0{unit}'
         alt = f'{trace_words(trace)}: measured, predicted before and after, and what remains'
         pictures.append(Picture(light, alt, caption, dark))
@@ -124,9 +125,8 @@ def _closed_loop(diagnosis: Diagnosis, evidence: Evidence, floors: Mapping[str, 
         blocks.append(channel_bars(diagnosis.closed_loop, 'Channel by channel, closed loop'))
         blocks.append(Details('The same in numbers', (gap_table(diagnosis.closed_loop),)))
     if evidence.closed_loop:
-        blocks += _pictures(
-            evidence.closed_loop, floors, 'The same command, measured and simulated.'
-        )
+        text = 'The same command, measured and simulated.'
+        blocks += _pictures(evidence.closed_loop, floors, text, _CLOSED)
     return Section('Closed loop', tuple(blocks), 'closed-loop')
 
 

@@ -229,7 +229,7 @@ def _next(diagnosis: Diagnosis) -> Section:
         blocks: list[Block] = []
         if step.do:
             blocks.append(Prose(f'Do: {step.do}'))
-        if step.add_channel:
+        if step.add_channel and step.add_channel not in step.do:
             blocks.append(Prose(f'Channel to record: {step.add_channel}'))
         names = [inside(effect_words(*pair)) for pair in step.separates]
         title = f'Tells apart {joined(names)}' if len(names) > 1 else f'Shows {joined(names)}'

@@ -88,7 +88,7 @@ def _channels(gaps: Sequence[ChannelGap]) -> list[str]:
         ('channel', 'before', 'after', 'floor', '', 'before/floor', 'after/floor')
     ]
     for gap in gaps:
-        factor, unit = scale(gap.unit, max(gap.before, gap.after))
+        factor, unit = scale(gap.unit, gap.after)
         rmse = (number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor))
         rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
     widths = [max(len(row[k]) for row in rows) for k in range(7)]

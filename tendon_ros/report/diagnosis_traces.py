@@ -12,9 +12,6 @@ from tendon_ros.diagnose.evidence import FloatArray, Trace
 from tendon_ros.report.diagnosis_words import channel_words, scale
 from tendon_ros.report.themes import Theme, themed
 
-#: pictures of more traces than these would bury the telling ones
-MOST_TRACES = 6
-
 _SIZE = (4.6, 6.6)  # [in], as wide as a phone's screen
 _HEIGHTS = (2.0, 1.5, 2.0)
 _CLOSER = 0.1  # part of the duration that the closer look shows
@@ -30,13 +27,14 @@ def rmse(trace: Trace) -> tuple[float, float]:
     return before, after
 
 
-def telling(traces: Sequence[Trace], floors: Mapping[str, float]) -> tuple[Trace, ...]:
+def telling(traces: Sequence[Trace], floors: Mapping[str, float], most: int) -> tuple[Trace, ...]:
     """
     Choose the traces that show most: of each channel the worst, then the worst of all.
 
     :param traces: all there are.
     :param floors: noise floor by channel.
-    :return: at most :data:`MOST_TRACES`, the worst gap against its noise first.
+    :param most: how many to choose.
+    :return: at most ``most``, the worst gap against its noise first.
     """
 
     def gap(trace: Trace) -> float:
@@ -45,7 +43,7 @@ def telling(traces: Sequence[Trace], floors: Mapping[str, float]) -> tuple[Trace
     order = sorted((t for t in traces if t.time.size > 1), key=gap, reverse=True)
     first = {t.channel: t for t in reversed(order)}.values()
     rest = [t for t in order if all(t is not f for f in first)]
-    chosen = [*sorted(first, key=gap, reverse=True), *rest][:MOST_TRACES]
+    chosen = [*sorted(first, key=gap, reverse=True), *rest][:most]
     return tuple(sorted(chosen, key=gap, reverse=True))
 
 
@@ -117,7 +115,16 @@ def trace_words(trace: Trace) -> str:
 def _lines(axes: Axes, theme: Theme, time: FloatArray, trace: Trace, factor: float) -> None:
     axes.plot(time, factor * trace.measured, color=theme.ink, linewidth=1.3, label='measured')
     axes.plot(time, factor * trace.before, color=theme.before, linewidth=1.6, label='file')
-    axes.plot(time, factor * trace.after, color=theme.after, linewidth=1.6, label='with effects')
+    # dashed, so that a model that is right does not hide what was measured
+    axes.plot(
+        time,
+        factor * trace.after,
+        color=theme.after,
+        linewidth=2.0,
+        linestyle=(0, (3, 2)),
+        dash_capstyle='butt',
+        label='with effects',
+    )
 
 
 def _held_out(axes: Axes, theme: Theme, time: FloatArray, trace: Trace) -> None:

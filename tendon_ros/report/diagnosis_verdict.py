@@ -156,7 +156,7 @@ def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:
     shrink = cause.shrink
     if not shrink.channel:
         return '', ''
-    factor, unit = scale(shrink.unit, max(shrink.without_this, shrink.after))
+    factor, unit = scale(shrink.unit, shrink.after)
     values = [number(factor * x, 3) for x in (shrink.without_this, shrink.after)]
     text = f'{values[0]} {unit} RMSE without it, {values[1]} with it'
     floor = floor_of(diagnosis, shrink.channel)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.evidence import Trace
-from tendon_ros.report.diagnosis_traces import MOST_TRACES, rmse, telling, trace_figure
+from tendon_ros.report.diagnosis_traces import rmse, telling, trace_figure
 
 NAMES = ('actuator/pulley_M/effort', 'load_cell/force')
 
@@ -31,16 +31,16 @@ def test_rmse_is_that_of_held_out_data():
 def test_worst_against_its_noise_comes_first_and_no_channel_is_missing():
     traces = [trace(f'r{k}', NAMES[0], 1.0 + 0.1 * k) for k in range(10)]
     traces.append(trace('weak', NAMES[1], 0.5))
-    chosen = telling(traces, dict.fromkeys(NAMES, 0.1))
-    assert len(chosen) == MOST_TRACES
+    chosen = telling(traces, dict.fromkeys(NAMES, 0.1), 6)
+    assert len(chosen) == 6
     assert chosen[0].recording == 'r9'
     assert chosen[-1].recording == 'weak'
-    noisy = telling(traces, {NAMES[0]: 10.0, NAMES[1]: 0.1})
+    noisy = telling(traces, {NAMES[0]: 10.0, NAMES[1]: 0.1}, 6)
     assert noisy[0].recording == 'weak'
 
 
 def test_traces_without_samples_are_not_drawn():
-    assert telling([trace('empty', NAMES[0], 1.0, 1)], {}) == ()
+    assert telling([trace('empty', NAMES[0], 1.0, 1)], {}, 6) == ()
 
 
 @pytest.mark.parametrize('floor', [0.02, None])
