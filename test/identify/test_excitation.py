@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.base.errors import EffectError
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.excitation import as_next_experiment, separating, together
+from tendon_ros.identify.excitation import separating, together
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import segment_of, SETTLING
@@ -132,11 +132,6 @@ def test_one_experiment_for_several_pairs(rig, found):
     ]
     assert best.deviations == min(same)
     assert len(same) == 2
-
-
-def test_plain_fields(found):
-    fields = as_next_experiment(found[0])
-    assert set(fields) == {'separates', 'do', 'add_channel'}
 
 
 def test_a_place_where_nothing_can_act(rig):
