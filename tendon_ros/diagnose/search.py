@@ -55,6 +55,7 @@ class Found:
     without: list[Fit] = field(default_factory=list)
     proposals: list[Proposal] = field(default_factory=list)
     next_best: list[Rival] = field(default_factory=list)
+    first: list[Rival] = field(default_factory=list)
 
     @property
     def start(self) -> Fit:
@@ -111,7 +112,7 @@ class Search:
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._settled(model)
             found.states.append(state)
-        while len(state.model.causes) < MOST:
+        while len(state.model.causes) < MOST and self.open_question(state):
             step = len(state.model.causes)
             self.report(f'looking for cause {step + 1}', 0.05 + 0.1 * step)
             proposals = self.screened(state)
@@ -121,7 +122,9 @@ class Search:
             found.next_best = rivals
             if not rivals or not self.worthwhile(found.start, state, rivals[0].fit):
                 break
-            state = self._settled(rivals[0].fit.model)
+            if not found.first:
+                found.first = rivals[1:]
+            state = self._settled(rivals[0].fit.model, self.problem.slopes(state))
             state = self._pruned(found.start, state)
             if len(state.model.causes) <= step:
                 break
@@ -204,6 +207,16 @@ class Search:
         gain, in_one = self.gains(before, after)
         return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > form_power(start, before)
 
+    def open_question(self, state: Fit) -> bool:
+        """
+        Return whether what is left has any structure that a further cause could explain.
+
+        :param state: what holds already.
+        :return: whether, over all samples or in one channel.
+        """
+        whole, in_one = self.problem.structures(state.left)
+        return whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
+
     def gains(self, before: Fit, after: Fit) -> tuple[float, float]:
         """
         Return how much power falls, in units of the noise's.
@@ -224,10 +237,10 @@ class Search:
         gain = (before.cost - after.cost) / max(len(before.left), 1)
         return gain, max((e[0] / e[1] for e in total.values() if e[1]), default=0.0)
 
-    def _settled(self, model: Model) -> Fit:
-        """Fit with the tolerances' derivatives where the model now is."""
-        fit = self.problem.fitted(model, rounds=6, accuracy=1e-3)
-        if not model.causes and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
+    def _settled(self, model: Model, known: Mapping[str, FloatArray] | None = None) -> Fit:
+        """Fit with derivatives that are known already, then with those where the model now is."""
+        fit = self.problem.fitted(model, known, rounds=6, accuracy=1e-3)
+        if known is None and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
             return fit
         return self.problem.fitted(fit.model, rounds=4, accuracy=1e-3)
 
@@ -253,11 +266,12 @@ class Search:
                 self.report(f'challenging {cause.effect} at {cause.place}', 0.6 + 0.05 * k)
                 known = self.problem.slopes(state)
                 smaller = state.model.without(k)
-                without = self.problem.fitted(smaller, known, rounds=6, accuracy=1e-2)
-                without = self.problem.fitted(without.model, rounds=3, accuracy=1e-3)
+                without = found.start
+                rivals = [r for r in found.first if r.candidate != cause]
+                if len(state.model.causes) > 1 or not rivals:
+                    without = self.problem.fitted(smaller, known, rounds=8, accuracy=1e-3)
+                    rivals = self.fitted(without, self.screened(without, leave=[cause]))
                 found.without.append(without)
-                screened = self.screened(without, leave=[cause])
-                rivals = self.fitted(without, screened)
                 rivals = self._sharpened(state, without, rivals)
                 found.rivals.append(rivals)
                 better = self._better(state, cause, rivals) if left else None
@@ -272,7 +286,12 @@ class Search:
         near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
         near += tie(self.problem, state) * len(state.left)
         close = [r for r in rivals if r.fit.cost < near][:CLOSE]
-        fits = list(self._pool.map(lambda r: self._settled(r.fit.model), close))
+        known = self.problem.slopes(state)
+
+        def careful(rival: Rival) -> Fit:
+            return self.problem.fitted(rival.fit.model, known, rounds=8, accuracy=1e-3)
+
+        fits = list(self._pool.map(careful, close))
         sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
         return sorted([*sharp, *(r for r in rivals if r not in close)], key=_judged)
 
@@ -287,7 +306,7 @@ class Search:
         ]
         for rival in [*simple[:1], *rivals[:1]]:
             if rival in simple or rival.fit.cost < 0.99 * state.cost:
-                trial = self._settled(rival.fit.model)
+                trial = self._settled(rival.fit.model, self.problem.slopes(state))
                 if rival in simple or trial.cost < 0.99 * state.cost:
                     return trial
         return None

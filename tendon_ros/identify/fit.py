@@ -278,14 +278,26 @@ class Problem:
         :param left: what is left, shape (samples,).
         :return: mean square in noise deviations, noise taken off.
         """
-        total, samples = 0.0, 0
-        for _, _, own in self.groups(left):
+        return self.structures(left)[0]
+
+    def structures(self, left: FloatArray) -> tuple[float, float]:
+        """
+        Return the same over all samples, and in the channel that has most of it.
+
+        :param left: what is left, shape (samples,).
+        :return: mean squares in noise deviations, noise taken off.
+        """
+        power: dict[str, list[float]] = {}
+        for n, c, own in self.groups(left):
             if len(own) <= NEIGHBOURS:
                 continue
             step = own[NEIGHBOURS:] - own[:-NEIGHBOURS]
-            total += float(own @ own) - 0.5 * float(step @ step) * len(own) / len(step)
-            samples += len(own)
-        return max(0.0, total / max(samples, 1))
+            noise = 0.5 * float(step @ step) * len(own) / len(step)
+            entry = power.setdefault(self._segments[n].measured[c].sensor.channel, [0.0, 0.0])
+            entry[0] += float(own @ own) - noise
+            entry[1] += len(own)
+        whole = sum(e[0] for e in power.values()) / max(sum(e[1] for e in power.values()), 1.0)
+        return max(0.0, whole), max((e[0] / e[1] for e in power.values()), default=0.0)
 
     def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:
         """

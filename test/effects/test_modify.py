@@ -102,9 +102,16 @@ def test_only_the_place_is_changed(effect, kind):
         ),
         ('pretension', 'cable', 1, {'scale': 0.5}, {('pretension', 1): 3.0}),
         ('cable_stiffness', 'cable', 0, {'scale': 0.8}, {('scale', 0): 0.8}),
-        ('backlash', 'coupling', 2, {'angle': 0.01}, {('play', 2): 0.01002}),
+        ('backlash', 'coupling', 2, {'angle': 0.01, 'held': 0.0}, {('play', 2): 0.01002}),
         # motor 1 turns pulley 0, on which loop 0 (radius 0.03) and coupling 2 (ratio -35) act
-        ('backlash', 'motor', 1, {'angle': 0.01}, {('play', 0): 3e-4, ('play', 2): 0.35002}),
+        (
+            'backlash',
+            'motor',
+            1,
+            {'angle': 0.01, 'held': 0.0},
+            {('play', 0): 3e-4, ('play', 2): 0.35002},
+        ),
+        ('backlash', 'motor', 1, {'angle': 0.01, 'held': 1.0}, {('lash', 0): 0.01}),
         ('torque_gain', 'motor', 1, {'gain': 0.9}, {('motor_gain', 1): 0.99}),
         ('torque_bias', 'motor', 1, {'torque': 0.05}, {('motor_bias', 1): 0.06}),
         ('torque_saturation', 'motor', 0, {'limit': 1.5}, {('motor_limit', 0): 1.5}),
