@@ -1,8 +1,13 @@
 """Fixtures that several folders of tests share."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.session import simulate
+from tendon_ros.model.trajectory_choice import chosen
 
 #: recordings that do not come with the package; tests that want them skip without
 SHARED = Path(__file__).resolve().parents[2] / 'shared'
@@ -31,3 +36,32 @@ def practice():
 def davinci_npz():
     """Return the file of the da Vinci grasper's runs; skip where it is absent."""
     return _shared('recordings/davinci_grasper/Tool_5_Maryland_L_3.npz')
+
+
+@pytest.fixture(scope='session')
+def measured_on():
+    """Return a function that records what an instrument's sensors see of a motion."""
+
+    def record(
+        instrument,
+        *effects,
+        touching=False,
+        trajectory='multisine',
+        settings=(('duration', '6 s'), ('amplitude', '5 deg')),
+        rate=500.0,
+        seed=1,
+        without=(),
+        name='free',
+    ):
+        uses = tuple(EffectUse(*effect) for effect in effects)
+        contacts = tuple(replace(c, enabled=touching) for c in instrument.contacts)
+        rig = replace(instrument, effects=(*instrument.effects, *uses), contacts=contacts)
+        motion = chosen(trajectory, rig.motor_names, dict(settings))
+        run = simulate(rig, motion, rate=rate, seed=seed)
+        kept = {s.channel for s in rig.sensors}
+        kept |= {f'setpoint/pulley_{driven}/position' for driven in rig.driven}
+        kept = {c for c in kept if not c.startswith(tuple(without))}
+        channels = {c: values for c, values in run.channels.items() if c in kept}
+        return replace(run, name=name, channels=channels)
+
+    return record

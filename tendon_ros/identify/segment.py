@@ -188,7 +188,8 @@ def _binned(
     channel: Channel, sensor: Sensor, start: float, period: float, bins: int
 ) -> tuple[FloatArray, float]:
     """Return the means over bins, NaN where empty, and the noise that they keep."""
-    index = np.floor((channel.time - start) / period).astype(np.int64)
+    # a stamp on an edge belongs to the bin that begins there, whatever its last digit says
+    index = np.floor((channel.time - start) / period + 1e-6).astype(np.int64)
     inside = (index >= 0) & (index < bins)
     count = np.bincount(index[inside], minlength=bins).astype(np.float64)
     total = np.bincount(index[inside], weights=channel.value[inside], minlength=bins)

@@ -1,0 +1,78 @@
+"""Candidates: every effect wherever it can act, and nowhere else."""
+
+import pytest
+
+from tendon_ros.base.errors import TendonError
+from tendon_ros.effects import catalogue, find
+from tendon_ros.identify.candidate import Candidate, check_withheld, everyone, starts
+from tendon_ros.model.numbers import place_index
+
+
+@pytest.fixture(scope='module')
+def channels(bench):
+    return [s.channel for s in bench.sensors]
+
+
+def pairs(candidates):
+    return {(c.effect, c.place) for c in candidates}
+
+
+def test_the_whole_catalogue_at_every_place(bench, channels):
+    found = pairs(everyone(bench, channels))
+    assert {effect for effect, _ in found} == set(catalogue())
+    for effect, place in found:
+        assert place_index(bench, place)[0] in find(effect).kinds
+    for pulley in 'M', 'L', '1', '2', '3':
+        assert ('coulomb_friction', f'pulley_{pulley}') in found
+    for cable in 'm1', '12', 'L3':
+        assert ('pretension', f'cable_{cable}') in found
+    assert ('pretension', 'pulley_1') not in found
+
+
+def test_a_sensor_that_was_not_there_is_not_at_fault(bench, channels):
+    silent = [c for c in channels if c != 'load_cell/force']
+    missing = pairs(everyone(bench, channels)) - pairs(everyone(bench, silent))
+    assert {place for _, place in missing} == {'load_cell'}
+    assert ('load_cell_gain', 'load_cell') in missing
+
+
+def test_withheld_everywhere_or_at_one_place(bench, channels):
+    full = pairs(everyone(bench, channels))
+    without = pairs(everyone(bench, channels, ['pretension', 'coulomb_friction@pulley_3']))
+    assert full - without == {('pretension', f'cable_{c}') for c in ('m1', '12', 'L3')} | {
+        ('coulomb_friction', 'pulley_3')
+    }
+
+
+@pytest.mark.parametrize(
+    ('text', 'says'),
+    [
+        ('coulomb_frictoin', 'coulomb_friction'),
+        ('pretension@cable_XX', 'cable_XX'),
+        ('pretension@pulley_3', 'cannot act there'),
+    ],
+)
+def test_withholding_what_does_not_exist_is_refused(bench, text, says):
+    with pytest.raises(TendonError) as caught:
+        check_withheld(bench, [text])
+    assert says in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+def test_starts_are_possible_values_and_change_something(bench, channels):
+    for candidate in everyone(bench, channels):
+        rows = starts(candidate)
+        assert rows
+        for row in rows:
+            for p in candidate.parameters:
+                assert p.low <= row[p.name] <= p.high
+            if candidate.scales:
+                assert any(row[p.name] != p.neutral for p in candidate.parameters)
+
+
+def test_an_event_can_be_of_one_recording():
+    slip = Candidate('cable_slip', 'cable_12', only='free')
+    assert slip.acts_in('free')
+    assert not slip.acts_in('contact')
+    assert Candidate('cable_slip', 'cable_12').acts_in('contact')
+    assert [p.name for p in slip.instants] == ['time']

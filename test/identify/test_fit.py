@@ -1,0 +1,113 @@
+"""Fits: what was put in comes out, whichever effect, controller or sampling."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate, starts
+from tendon_ros.model.instrument_file import load_instrument
+
+#: effect, place, parameters, and the relative error that noise and smoothing may leave
+INJECTED = [
+    ('coulomb_friction', 'pulley_3', {'torque': 0.1}, 0.03),
+    ('tension_friction', 'pulley_2', {'coefficient': 0.1}, 0.05),
+    ('pretension', 'cable_L3', {'scale': 0.5}, 0.05),
+    ('cable_stiffness', 'cable_12', {'scale': 1.3}, 0.05),
+    ('torque_gain', 'motor_L', {'gain': 0.9}, 0.01),
+    ('torque_bias', 'motor_M', {'torque': 0.05}, 0.03),
+    ('encoder_gain', 'encoder_1', {'gain': 1.02}, 0.005),
+    ('sensor_delay', 'torque_L', {'time': 0.02}, 0.08),
+]
+
+
+def fitted(bench, run, effect, place):
+    problem = prepared([run], bench).problem
+    cause = Candidate(effect, place)
+    fits = [
+        problem.fitted(problem.empty.joined(cause, values), rounds=12) for values in starts(cause)
+    ]
+    return problem, min(fits, key=lambda fit: fit.cost)
+
+
+@pytest.mark.parametrize(('effect', 'place', 'truth', 'within'), INJECTED)
+def test_recovers_what_was_put_in(bench, measured_on, effect, place, truth, within):
+    # a free tip hardly stretches a cable
+    press = {'trajectory': 'paper_fig12', 'settings': (), 'touching': True}
+    run = measured_on(bench, (effect, place, truth), **(press if 'cable' in place else {}))
+    problem, fit = fitted(bench, run, effect, place)
+    for name, value in truth.items():
+        assert fit.model.values(0)[name] == pytest.approx(value, rel=within)
+    assert fit.cost < 1.3 * len(fit.left)
+    assert fit.cost < 0.8 * problem.fitted(problem.empty).cost
+
+
+@pytest.mark.parametrize(('part', 'rate'), [(0.6, 1000.0), (1.3, 125.0)])
+def test_with_another_controller_and_sampling(bench, measured_on, part, rate):
+    soft = replace(
+        bench,
+        motors=tuple(
+            replace(m, controller=replace(m.controller, kp=part * m.controller.kp, ki=30.0))
+            for m in bench.motors
+        ),
+    )
+    run = measured_on(soft, ('torque_gain', 'motor_M', {'gain': 1.15}), rate=rate)
+    _, fit = fitted(bench, run, 'torque_gain', 'motor_M')
+    assert fit.model.values(0)['gain'] == pytest.approx(1.15, rel=0.02)
+
+
+def test_a_phase_is_found_from_any_start(measured_on):
+    body = load_instrument('single_body')
+    truth = {'torque': 0.2, 'phase': -1.2}
+    run = measured_on(
+        body,
+        ('gravity', 'pulley_body', truth),
+        settings=(('duration', '6 s'), ('amplitude', '30 deg')),
+    )
+    _, fit = fitted(body, run, 'gravity', 'pulley_body')
+    values = fit.model.values(0)
+    # half a turn away and pulling the other way is the same
+    wanted = 0.2 * np.exp(1j * truth['phase'])
+    assert values['torque'] * np.exp(1j * values['phase']) == pytest.approx(wanted, abs=0.01)
+
+
+def test_sound_data_leave_noise_and_the_numbers_where_they_are(sound_problem):
+    fit = sound_problem.fitted(sound_problem.empty)
+    assert 0.4 * len(fit.left) < fit.cost < 1.2 * len(fit.left)
+    assert np.abs(fit.model.moved).max() < 2.0
+    assert sound_problem.structured(fit.left) < 0.1
+
+
+def test_errors_of_a_percent_are_taken_by_the_tolerances(bench, measured_on):
+    off = [
+        ('inertia', 'pulley_3', {'scale': 1.02}),
+        ('cable_stiffness', 'cable_L3', {'scale': 0.98}),
+        ('viscous_friction', 'pulley_3', {'damping': 0.05}),
+    ]
+    problem = prepared([measured_on(bench, *off)], bench).problem
+    before = float(np.sum(problem.left(problem.empty) ** 2))
+    fit = problem.fitted(problem.empty)
+    assert before > 2.0 * len(fit.left)
+    assert fit.cost < 1.3 * len(fit.left)
+
+
+def test_a_number_moves_no_farther_than_three_deviations(bench, measured_on):
+    run = measured_on(bench, ('pretension', 'cable_L3', {'scale': 0.4}))
+    fit = prepared([run], bench).problem
+    done = fit.fitted(fit.empty)
+    assert np.abs(done.model.moved).max() <= 3.0 + 1e-9
+    assert done.cost > 1.5 * len(done.left)
+
+
+def test_unknowns_survive_packing(sound_problem):
+    model = sound_problem.empty.joined(
+        Candidate('coulomb_friction', 'pulley_3'), {'torque': 0.07}
+    ).joined(Candidate('gravity', 'pulley_2'), {'torque': 0.1, 'phase': 0.4})
+    again = sound_problem.unpack(model, sound_problem.pack(model))
+    assert again.values(0) == pytest.approx({'torque': 0.07})
+    assert again.values(1) == pytest.approx({'torque': 0.1, 'phase': 0.4})
+    smaller = again.without(0)
+    assert smaller.values(0) == again.values(1)
+    # without dry friction there is nothing to build up over an angle
+    assert not smaller.bristle

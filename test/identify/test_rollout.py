@@ -1,0 +1,62 @@
+"""Rollouts: measured motion drives the model, whoever commanded that motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.model.instrument import EffectUse
+
+INJECTED = {
+    'friction': ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
+    'gain': ('torque_gain', 'motor_L', {'gain': 0.85}),
+    'offset': ('encoder_offset', 'encoder_M', {'angle': 0.01}),
+    'scale': ('encoder_gain', 'encoder_L', {'gain': 1.05}),
+}
+
+
+def misfit(problem, *effects):
+    """Return the power of what is left, in noise deviations, with effects in force."""
+    uses = [[EffectUse(*effect) for effect in effects] for _ in problem.rollouts.segments]
+    rows = problem.rollouts.predicted(uses)
+    left = problem.flat([m - p for m, p in zip(problem.rollouts.measured, rows, strict=True)])
+    return float(np.mean(left**2))
+
+
+@pytest.mark.parametrize('effect', INJECTED.values(), ids=INJECTED)
+def test_the_true_effect_explains_and_its_absence_does_not(bench, measured_on, effect):
+    problem = prepared([measured_on(bench, effect)], bench).problem
+    assert misfit(problem, effect) < 1.2
+    assert misfit(problem) > 2.0 * misfit(problem, effect)
+
+
+@pytest.mark.parametrize(('part', 'rate'), [(0.5, 1000.0), (1.0, 250.0), (1.4, 100.0)])
+def test_controller_and_sampling_do_not_matter(bench, measured_on, part, rate):
+    other = replace(
+        bench,
+        motors=tuple(
+            replace(m, controller=replace(m.controller, kp=part * m.controller.kp))
+            for m in bench.motors
+        ),
+    )
+    run = measured_on(other, rate=rate)
+    assert misfit(prepared([run], bench).problem) < 1.5
+
+
+def test_several_models_at_once_are_the_same_as_one_by_one(sound_problem):
+    rollouts = sound_problem.rollouts
+    models = [[[EffectUse(*e)]] for e in (INJECTED['friction'], INJECTED['gain'])]
+    threaded = Rollouts(rollouts.instrument, rollouts.segments, jobs=2).many(models)
+    for model, [row] in zip(models, threaded, strict=True):
+        [alone] = rollouts.predicted(model)
+        assert np.array_equal(row, alone)
+
+
+def test_what_is_impossible_is_infinitely_bad_and_no_crash(sound_problem):
+    far = EffectUse('cable_stiffness', 'cable_12', {'scale': 1e-9})
+    mad = EffectUse('inertia', 'pulley_1', {'scale': 1e-30})
+    [row] = sound_problem.rollouts.predicted([[far, mad]])
+    assert row.shape == sound_problem.rollouts.measured[0].shape
+    assert not np.isnan(row).any()

@@ -1,0 +1,66 @@
+"""Screening: what was put in is proposed first, with about its size."""
+
+import pytest
+
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.screening import Screen
+
+#: what was put in, and what else it may be mistaken for before anything is fitted
+INJECTED = [
+    (('torque_gain', 'motor_L', {'gain': 0.9}), set()),
+    (
+        ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
+        {
+            (f'{kind}_friction', 'pulley_3')
+            for kind in ('tension', 'stribeck', 'asymmetric', 'presliding')
+        },
+    ),
+    (('encoder_gain', 'encoder_2', {'gain': 1.03}), {('eccentricity', 'pulley_2')}),
+    (('cable_slip', 'cable_12', {'jump': 2e-4, 'time': 3.0}), set()),
+]
+
+
+def screened(bench, run):
+    problem = prepared([run], bench).problem
+    screen = Screen(problem, problem.fitted(problem.empty))
+    found = []
+    for candidate in everyone(bench, sorted(run.channels)):
+        found += [screen.corrected(p) for p in screen.proposals(candidate)[:1]]
+    return sorted(found, key=lambda p: -p.gain)
+
+
+@pytest.mark.parametrize(('effect', 'alike'), INJECTED, ids=[e[0][0] for e in INJECTED])
+def test_what_was_put_in_comes_first(bench, measured_on, effect, alike):
+    ranked = screened(bench, measured_on(bench, effect))
+    first = [(p.candidate.effect, p.candidate.place) for p in ranked[:10]]
+    assert effect[:2] in first
+    assert first[0] in alike | {effect[:2]}
+    own = next(p for p in ranked if (p.candidate.effect, p.candidate.place) == effect[:2])
+    for name, value in effect[2].items():
+        assert own.values[name] == pytest.approx(value, rel=0.3)
+
+
+def test_sound_data_propose_nothing_worth_much(bench, sound_run):
+    ranked = screened(bench, sound_run)
+    samples = 5000
+    assert ranked[0].gain < 0.02 * samples
+
+
+def test_what_leaves_no_trace_is_not_proposed(bench, measured_on):
+    problem = prepared([measured_on(bench, without=('pulley/', 'load_cell'))], bench).problem
+    screen = Screen(problem, problem.fitted(problem.empty))
+    # nothing is touched, so the wall's stiffness does nothing
+    assert screen.proposals(Candidate('contact_stiffness', 'contact')) == []
+
+
+def test_a_size_that_can_only_grow_is_not_made_smaller(bench, measured_on):
+    rig_drives = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
+    run = measured_on(bench, rig_drives)
+    # the file claims the friction that the machine has, twice over
+    problem = prepared([run], bench).problem
+    state = problem.fitted(
+        problem.empty.joined(Candidate('coulomb_friction', 'pulley_3'), {'torque': 0.2}), rounds=0
+    )
+    for p in Screen(problem, state).proposals(Candidate('tension_friction', 'pulley_3')):
+        assert p.values['coefficient'] >= 0.0

@@ -1,0 +1,70 @@
+"""Smoothing: within the counts, smoother than the counts, and across gaps."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.identify.smoothing import smoothed
+
+COUNT = 2.0 * np.pi / 28000
+TIME = 0.002 * np.arange(2000)
+
+
+def swing(time):
+    return 0.08 * np.sin(2.0 * np.pi * 0.5 * time) + 0.02 * np.sin(2.0 * np.pi * 1.7 * time)
+
+
+def counted(value):
+    return COUNT * np.round(value / COUNT)
+
+
+def test_stays_within_a_count_and_is_nearer_to_the_truth():
+    truth = swing(TIME)
+    reading = counted(truth)
+    known = np.ones(len(TIME), dtype=bool)
+    found = smoothed(reading, known, COUNT / np.sqrt(12.0))
+    assert np.abs(found - reading).max() < COUNT
+    assert np.std(found - truth) < 0.5 * np.std(reading - truth)
+
+
+def test_acceleration_becomes_usable():
+    truth = swing(TIME)
+    found = smoothed(counted(truth), np.ones(len(TIME), dtype=bool), COUNT / np.sqrt(12.0))
+    inner = slice(100, -100)
+    wanted = np.gradient(np.gradient(truth, TIME), TIME)[inner]
+    off = np.gradient(np.gradient(found, TIME), TIME)[inner] - wanted
+    raw = np.gradient(np.gradient(counted(truth), TIME), TIME)[inner] - wanted
+    assert np.std(off) < 0.4 * np.std(wanted)
+    assert np.std(raw) > 10.0 * np.std(off)
+
+
+@pytest.mark.parametrize('length', [5, 40])
+def test_bridges_a_gap_whatever_stands_there(length):
+    truth = swing(TIME)
+    reading = counted(truth)
+    known = np.ones(len(TIME), dtype=bool)
+    known[900 : 900 + length] = False
+    reading[~known] = 7.0
+    found = smoothed(reading, known, COUNT / np.sqrt(12.0))
+    # 80 ms of a swing of 1.7 Hz: a few counts
+    assert np.abs(found - truth)[~known].max() < 4.0 * COUNT
+
+
+def test_a_perfect_sensor_is_left_alone():
+    value = swing(TIME)
+    known = np.ones(len(TIME), dtype=bool)
+    known[500] = False
+    found = smoothed(value, known, 0.0)
+    assert np.array_equal(found[known], value[known])
+    assert found[500] == pytest.approx(value[500], abs=1e-6)
+
+
+def test_a_motor_at_rest_stays_at_rest():
+    found = smoothed(np.full(500, 0.3), np.ones(500, dtype=bool), COUNT)
+    assert np.abs(found - 0.3).max() < 0.01 * COUNT
+
+
+def test_a_quick_motion_is_not_flattened():
+    # 5 Hz of two degrees: the smoother must not trade it for smoothness
+    truth = np.deg2rad(2.0) * np.sin(2.0 * np.pi * 5.0 * TIME)
+    found = smoothed(counted(truth), np.ones(len(TIME), dtype=bool), COUNT / np.sqrt(12.0))
+    assert np.abs(found - truth).max() < 1.5 * COUNT

@@ -1,0 +1,66 @@
+"""Tolerances: what the file states may move, as far as it states, and nothing else."""
+
+from dataclasses import replace
+import math
+
+import pytest
+
+from tendon_ros.identify.tolerance import REACH, tolerances
+
+
+def by_name(instrument):
+    return {f'{t.place}.{t.quantity}': t for t in tolerances(instrument)}
+
+
+def test_a_file_that_states_nothing_is_as_good_as_files_are(bench):
+    found = by_name(bench)
+    for pulley in ('M', 'L', '1', '2', '3'):
+        assert found[f'pulley_{pulley}.inertia'].effect == 'inertia'
+        assert found[f'pulley_{pulley}.damping'].effect == 'viscous_friction'
+    for loop in ('m1', '12', 'L3'):
+        tight = found[f'cable_{loop}.pretension'].axis
+        assert tight.value(1.0) - tight.value(0.0) < 0.05
+        assert tight.spread == 1.0
+    # nobody doubts a torque constant or a wall unless the file does
+    assert not [name for name in found if 'torque_gain' in name or name.endswith('.position')]
+
+
+def test_what_the_file_states(bench):
+    stated = {
+        'pulley_3.inertia': 0.1,
+        'cable_L3.pretension': 0.0,
+        'motor_M.torque_gain': 0.05,
+        'contact.position': 0.01,
+        'pulley_1.damping': math.inf,
+        'cable_m1.stiffness': math.inf,
+    }
+    found = by_name(replace(bench, tolerances=stated))
+    inertia = found['pulley_3.inertia'].axis
+    assert inertia.value(1.0) == pytest.approx(1.1)
+    assert inertia.value(9.0) == pytest.approx(1.0 + REACH * 0.1)
+    assert 'cable_L3.pretension' not in found
+    assert found['motor_M.torque_gain'].axis.value(-1.0) == pytest.approx(0.95)
+    wall = found['contact.position'].axis
+    assert wall.value(0.0) == 0.0
+    assert wall.value(1.0) == pytest.approx(0.01)
+
+
+def test_a_guess_may_be_anything_positive(bench):
+    stated = {'cable_m1.stiffness': math.inf, 'pulley_1.damping': math.inf}
+    found = by_name(replace(bench, tolerances=stated))
+    stiff = found['cable_m1.stiffness'].axis
+    assert stiff.log
+    assert stiff.value(-1e3) > 0.0
+    assert stiff.value(5.0) > 5.0
+    damping = found['pulley_1.damping'].axis
+    assert damping.value(20.0) > 5.0 * 0.02
+    assert damping.spread > 5.0
+
+
+def test_damping_of_zero_may_only_move_where_it_was_guessed(bench):
+    still = replace(
+        bench, pulleys=tuple(replace(p, damping=0.0) for p in bench.pulleys), tolerances={}
+    )
+    assert not [name for name in by_name(still) if name.endswith('.damping')]
+    guessed = replace(still, tolerances={'pulley_2.damping': math.inf})
+    assert 'pulley_2.damping' in by_name(guessed)
