@@ -37,7 +37,7 @@ class Answer:
     @property
     def right(self) -> bool:
         """
-        Whether every effect was named at its place, and nothing else.
+        Whether every effect was named at its place, nothing else, and nothing said to be left.
 
         An effect counts as named where it is among what these data cannot tell from a cause.
         """
@@ -47,7 +47,7 @@ class Answer:
             if hit is None:
                 return False
             open_.remove(hit)
-        return not open_
+        return not open_ and self.diagnosis.verdict == ('explained' if self.truth else 'no_gap')
 
     @property
     def shrink(self) -> tuple[float, float, float]:

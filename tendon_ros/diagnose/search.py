@@ -289,7 +289,8 @@ class Search:
         known = self.problem.slopes(state)
 
         def careful(rival: Rival) -> Fit:
-            return self.problem.fitted(rival.fit.model, known, rounds=8, accuracy=1e-3)
+            # derivatives of another state stall a fit: two places then seem to differ that do not
+            return self._settled(rival.fit.model, known)
 
         fits = list(self._pool.map(careful, close))
         sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]

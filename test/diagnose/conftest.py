@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose import session
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen
@@ -81,3 +82,37 @@ def only():
         )
 
     return keep
+
+
+FRICTION = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
+SCALE = ('encoder_gain', 'encoder_1', {'gain': 1.03})
+
+
+@pytest.fixture(scope='session')
+def quick():
+    """Return a diagnosis that does not simulate what to measure next: that takes longest."""
+
+    def run(recordings, instrument, **settings):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(session, 'next_experiments', lambda *_: ())
+            return session.diagnose(recordings, instrument, **settings)
+
+    return run
+
+
+@pytest.fixture(scope='session')
+def sound_outcome(bench, measured_on, quick):
+    """Return what is said of a bench as it should be."""
+    return quick([measured_on(bench)], bench)
+
+
+@pytest.fixture(scope='session')
+def two_run(bench, measured_on):
+    """Return a recording of the bench with two effects."""
+    return measured_on(bench, FRICTION, SCALE)
+
+
+@pytest.fixture(scope='session')
+def two_outcome(bench, two_run, quick):
+    """Return what is said of it."""
+    return quick([two_run], bench)

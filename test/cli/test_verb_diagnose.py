@@ -1,0 +1,115 @@
+"""``tendon diagnose`` writes what it promises, and refuses in one line what it cannot do."""
+
+import json
+
+import pytest
+
+from tendon_ros.bags.writer import write_recording
+from tendon_ros.cli.main import main
+from tendon_ros.diagnose.result import Diagnosis
+from tendon_ros.model.instrument_file import load_instrument
+
+BODY = ['--instrument', 'single_body']
+
+
+@pytest.fixture(scope='module')
+def bag(measured_on, tmp_path_factory):
+    """Return a bag of one driven body with a weight on it."""
+    body = load_instrument('single_body')
+    run = measured_on(
+        body,
+        ('gravity', 'pulley_body', {'torque': 0.3, 'phase': 0.3}),
+        settings=(('duration', '6 s'), ('amplitude', '30 deg')),
+    )
+    path = tmp_path_factory.mktemp('bags') / 'weight'
+    write_recording(run, path)
+    return path
+
+
+def said(capsys, *words):
+    """Run the command; return its status, and what stands on stdout and stderr."""
+    try:
+        status = main(['diagnose', *map(str, words)])
+    except SystemExit as stop:
+        status = stop.code
+    streams = capsys.readouterr()
+    return status, streams.out, streams.err
+
+
+def test_writes_what_it_promises(bag, tmp_path, capsys):
+    out = tmp_path / 'found'
+    status, text, progress = said(capsys, bag, *BODY, '--out', out)
+    assert status == 0
+    data = json.loads((out / 'diagnosis.json').read_text())
+    found = Diagnosis.model_validate(data)
+    assert found.verdict == 'explained'
+    [cause] = found.causes
+    pairs = {(cause.effect, cause.place), *((c.effect, c.place) for c in cause.indistinguishable)}
+    assert ('gravity', 'pulley_body') in pairs
+    patched = load_instrument(str(out / 'instrument.yaml'))
+    assert (cause.effect, cause.place) in {(e.effect, e.place) for e in patched.effects}
+    status, _, _ = said(capsys, bag, '--instrument', out / 'instrument.yaml', '--out', out / 'b')
+    assert status == 0
+    assert json.loads((out / 'b/diagnosis.json').read_text())['verdict'] == 'no_gap'
+    page = (out / 'report.html').read_text()
+    assert page.lstrip().lower().startswith('<!doctype html')
+    assert 'src="http' not in page
+    assert 'href="http' not in page.split('<body')[0]
+    assert not (out / 'unfinished.json').exists()
+    # what is left in the folder is explained there
+    told = (out / 'README.txt').read_text()
+    assert all(p.name in told for p in out.iterdir() if p.name not in ('README.txt', 'b'))
+    assert 'report.html' in text
+    assert 'looking for cause 1' in progress
+    assert '%' in progress
+    assert 'looking for' not in text
+
+
+def test_withheld_on_the_command_line(bag, tmp_path, capsys):
+    words = ['--withhold', 'gravity', '--withhold', 'joint_spring@pulley_body']
+    status, _, _ = said(capsys, bag, *BODY, '--out', tmp_path / 'x', *words)
+    assert status == 0
+    rows = json.loads((tmp_path / 'x/diagnosis.json').read_text())['candidates']
+    assert not {'gravity', 'joint_spring'} & {row['effect'] for row in rows}
+
+
+@pytest.mark.parametrize(
+    ('words', 'says'),
+    [
+        (['nowhere', *BODY, '--out', 'x'], 'nowhere'),
+        (['BAG', '--instrument', 'no_such_rig', '--out', 'x'], 'no_such_rig'),
+        (['BAG', *BODY, '--out', 'x', '--withhold', 'gravitas'], 'gravitas'),
+        (['BAG', *BODY, '--out', 'x', '--withhold', 'gravity@pulley_9'], 'pulley_9'),
+        (['BAG', *BODY, '--out', 'x', '--jobs', '0'], '--jobs 0'),
+        (['BAG', *BODY, '--out', 'x', '--jobs', 'many'], 'many'),
+        (['BAG', *BODY], '--out'),
+        (['BAG', *BODY, '--out', 'a_file/x'], 'a_file'),
+        ([*BODY, '--out', 'x'], 'BAG'),
+        (['BAG', '--instrument', 'bench_rig', '--out', 'x'], 'pulley_'),
+    ],
+)
+def test_mistakes_are_told_in_one_line(bag, tmp_path, monkeypatch, capsys, words, says):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'a_file').write_text('not a folder')
+    status, text, error = said(capsys, *(bag if word == 'BAG' else word for word in words))
+    assert status == 2
+    assert text == ''
+    [line] = [row for row in error.splitlines() if not row.lstrip().startswith('0%')]
+    assert says in line
+    assert 'Traceback' not in error
+
+
+def test_an_interrupt_is_no_answer_and_no_traceback(bag, tmp_path, monkeypatch, capsys):
+    from tendon_ros.diagnose import search
+
+    def stopped(self):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(search.Search, 'run', stopped)
+    try:
+        status = main(['diagnose', str(bag), *BODY, '--out', str(tmp_path / 'x')])
+    except KeyboardInterrupt:
+        pytest.fail('Ctrl-C came through')
+    assert status not in (0, 2)
+    assert 'Traceback' not in capsys.readouterr().err
+    assert not (tmp_path / 'x/diagnosis.json').exists()

@@ -1,0 +1,94 @@
+"""Intervals cover the truth as often as they say, correlated residuals or not."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.intervals import deviations, mean_square_interval, parameter_intervals
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.segment import Measured, Segment
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.signals import Signals
+
+PERIOD, BINS = 0.01, 3000
+TRUTH = 0.05
+
+
+class Line:
+    """Rollouts of a model that is a straight line: torque bias and gain of one motor."""
+
+    def __init__(self, value):
+        time = PERIOD * (np.arange(BINS) + 0.5)
+        sensor = next(s for s in load_instrument('single_body').sensors if 'effort' in s.channel)
+        measured = Measured(sensor, value, np.full(BINS, 0.01), 0.0)
+        self.segments = (Segment('line', PERIOD, time, (), Signals.none(), (measured,), (), {}),)
+        self.measured = (value[None, :],)
+
+    def predicted(self, uses):
+        torque = sum(use.parameters['torque'] for use in uses[0])
+        time = self.segments[0].time
+        return (torque * (1.0 + np.sin(time))[None, :],)
+
+
+def noise(rng, memory):
+    """Return noise of one deviation with a memory of so many bins."""
+    white = rng.normal(size=BINS + 1000)
+    if not memory:
+        return white[:BINS]
+    part = np.exp(-1.0 / memory)
+    out = np.empty_like(white)
+    out[0] = white[0]
+    for k in range(1, len(white)):
+        out[k] = part * out[k - 1] + np.sqrt(1.0 - part**2) * white[k]
+    return out[1000:]
+
+
+def fits(memory, count):
+    for seed in range(count):
+        rng = np.random.default_rng(seed)
+        line = Line(np.zeros(BINS))
+        shape = 1.0 + np.sin(line.segments[0].time)
+        line = Line(TRUTH * shape + 0.01 * noise(rng, memory))
+        problem = Problem(line, (), [np.ones(BINS, dtype=bool)])
+        cause = Candidate('torque_bias', 'motor_body')
+        yield problem, problem.fitted(problem.empty.joined(cause, {'torque': 0.02}))
+
+
+@pytest.mark.parametrize('memory', [0, 20])
+def test_the_truth_lies_within(memory):
+    inside = 0
+    for problem, fit in fits(memory, 100):
+        [row] = parameter_intervals(problem, fit)
+        low, high = row['torque']
+        inside += low <= TRUTH <= high
+        assert high - low < 0.2 * TRUTH
+    assert inside >= 90
+
+
+def test_correlated_residuals_are_not_taken_for_proof():
+    wide = [deviations(p, f)[0] for p, f in fits(20, 5)]
+    white = [deviations(p, f)[0] for p, f in fits(0, 5)]
+    assert np.median(wide) > 2.0 * np.median(white)
+
+
+def test_the_spread_is_the_one_that_repetition_shows():
+    found, told = [], []
+    for problem, fit in fits(20, 60):
+        found.append(fit.model.z[0][0])
+        told.append(deviations(problem, fit)[0])
+    assert 0.7 < np.mean(told) / np.std(found) < 1.6
+
+
+def test_the_interval_of_a_gap_covers_it():
+    rng = np.random.default_rng(0)
+    inside = 0
+    for _ in range(300):
+        blocks = 4.0 * rng.chisquare(30, size=8) / 30
+        low, high = mean_square_interval(blocks)
+        inside += low <= 2.0 <= high
+    assert 270 <= inside <= 299
+
+
+def test_a_gap_of_one_block_has_no_width():
+    assert mean_square_interval([4.0]) == (2.0, 2.0)
+    assert mean_square_interval([]) == (0.0, 0.0)

@@ -1,0 +1,112 @@
+"""Preparation: contacts and loads of each recording, noise, and what no fit may see."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.prepare import held_out, prepared
+from tendon_ros.identify.candidate import Candidate
+
+
+@pytest.fixture(scope='module')
+def pressed(bench, measured_on):
+    """Return a recording with the tip against the wall."""
+    return measured_on(bench, trajectory='paper_fig12', settings=(), touching=True, name='contact')
+
+
+@pytest.fixture(scope='module')
+def free(bench, measured_on):
+    """Return a recording with the tip free, and a load cell that reads noise."""
+    return measured_on(bench)
+
+
+def test_contacts_are_found_for_each_recording(bench, pressed, free):
+    ready = prepared([pressed, free], bench)
+    first, second = ready.whole.rollouts.segments
+    assert first.contacts == ('tip',)
+    assert second.contacts == ()
+    assert not first.pushed
+    assert not second.pushed
+
+
+def test_contacts_are_found_without_a_load_cell(bench, pressed, free, only):
+    runs = only([pressed, free], 'actuator/', 'setpoint/')
+    first, second = prepared(runs, bench).whole.rollouts.segments
+    assert first.contacts == ('tip',)
+    assert second.contacts == ()
+
+
+@pytest.mark.parametrize('bias', [0.0, 0.5])
+def test_a_cell_that_touches_nothing_does_not_push(bench, free, bias):
+    cell = free['load_cell/force']
+    run = free.with_channels([Channel(cell.name, cell.time, cell.value + bias)])
+    [segment] = prepared([run], bench).whole.rollouts.segments
+    assert not segment.pushed
+    assert 'load_cell/force' in {m.sensor.channel for m in segment.measured}
+
+
+def test_a_measured_load_pushes_where_no_wall_fits(bench, measured_on):
+    # something soft at another place than the wall of the file
+    soft = replace(
+        bench,
+        contacts=tuple(
+            replace(c, stiffness=0.005 * c.stiffness, position=-0.15, damping=0.0)
+            for c in bench.contacts
+        ),
+    )
+    run = measured_on(soft, touching=True, trajectory='paper_fig12', settings=())
+    ready = prepared([run], bench)
+    [segment] = ready.whole.rollouts.segments
+    assert segment.pushed == ('2',)
+    left = ready.whole.left(ready.whole.empty)
+    assert np.mean(left**2) < 2.0
+
+
+def test_noise_is_found_and_counts_are_part_of_it(bench, free):
+    [segment] = prepared([free], bench).whole.rollouts.segments
+    torque = next(m for m in segment.measured if m.sensor.channel == 'actuator/pulley_M/effort')
+    # 10 mN m at 500 Hz, four samples a bin
+    assert np.median(torque.noise) > 0.9 * 0.005
+    assert np.median(torque.noise) < 2.0 * 0.005
+    louder = Channel(
+        torque.sensor.channel,
+        free[torque.sensor.channel].time,
+        free[torque.sensor.channel].value
+        + np.random.default_rng(2).normal(0.0, 0.04, len(free[torque.sensor.channel].time)),
+    )
+    [other] = prepared([free.with_channels([louder])], bench).whole.rollouts.segments
+    again = next(m for m in other.measured if m.sensor.channel == torque.sensor.channel)
+    assert np.median(again.noise) == pytest.approx(0.02, rel=0.25)
+
+
+def test_a_gap_is_no_noise_once_its_cause_is_known(bench, free, scaled):
+    name = 'actuator/pulley_L/effort'
+
+    def level(ready):
+        [segment] = ready.whole.rollouts.segments
+        return np.median(next(m for m in segment.measured if m.sensor.channel == name).noise)
+
+    sound = level(prepared([free], bench))
+    off = prepared(scaled([free], name, 1.25), bench)
+    assert level(off) > 1.5 * sound
+    cause = Candidate('torque_gain', 'motor_L')
+    assert level(off.heard_again(off.whole.empty.joined(cause, {'gain': 0.8}))) < 1.3 * sound
+
+
+def test_no_fit_sees_what_is_held_out(bench, pressed, free):
+    ready = prepared([pressed, free], bench)
+    for fitted, held, whole in zip(
+        ready.problem.masks, ready.held.masks, ready.whole.masks, strict=True
+    ):
+        assert not (fitted & held).any()
+        assert np.array_equal(fitted | held, whole)
+        assert 0.1 < held.sum() / whole.sum() < 0.4
+
+
+def test_of_many_recordings_whole_ones_are_held_out(bench, free):
+    [segment] = prepared([free], bench).whole.rollouts.segments
+    masks = held_out([segment] * 8)
+    assert [bool(m.all()) for m in masks].count(True) == 2
+    assert all(m.all() or not m.any() for m in masks)
