@@ -1,4 +1,4 @@
-"""``tendon demo``: the paper's experiment live, its figures, and a real tool if one is given."""
+"""``tendon demo``: the paper's experiment live, its figures, a real tool, the paper's story."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tendon_ros.report.demo_page import LiveRig, RealTool
 
-HELP = 'run the rig live over ROS 2, analyse the bag, reproduce the paper, and make a page'
+HELP = "run the rig live over ROS 2, reproduce the paper, and diagnose its rig's gap"
 
 INSTRUMENT = 'paper_rig'
 METHOD = 'dynamic'
@@ -46,6 +46,7 @@ def run(args: argparse.Namespace) -> None:
 
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import shown
+    from tendon_ros.cli.story_session import tell
     from tendon_ros.report.demo_page import write_demo_page
     from tendon_ros.report.paper_page import reproduce
 
@@ -82,7 +83,9 @@ def run(args: argparse.Namespace) -> None:
         print('3. No recording of a real tool given (--grasper FILE.npz)')
     page = out / 'index.html'
     write_demo_page(page, rig, tool)
-    print(f'Look at {page}')
+    print(f'   {page}')
+    print("4. The paper's story, by machine: a rig that is not as its file says", flush=True)
+    print(f'Look at {tell(out / "story")} and {page}')
 
 
 def _live(folder: Path) -> LiveRig:

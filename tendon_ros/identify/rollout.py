@@ -25,7 +25,7 @@ from tendon_ros.model.simulation import predict
 FloatArray = NDArray[np.float64]
 
 USUAL = 0.6  # part of a motor's torques that no unknown limit cuts off
-TOLERANCE = 1e-6  # [rad] a step; a hundredth of an encoder's count
+TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
 
 
 class Rollouts:

@@ -33,8 +33,8 @@ D21, D22, D23 = 10.12623508344586, -7.487995877610167, -34.80091861555747
 D24, D25 = -7.992771707568823, 1.025137723295662
 D31, D32, D33 = -0.6762803392801253, 6.087714651680015, 16.43084320892478
 D34, D35 = 24.76722511418386, -6.594389125716872
-#: auxiliary states are of order one; this error of theirs counts as much as the angle's tolerance
-STATE_TOLERANCE = 1e-5
+#: auxiliary states are of order one: so many times the angle's tolerance is as bad in them
+STATE_RATIO = 100.0
 
 
 def load(d: Ints, w: Floats, kick: float) -> None:
@@ -158,9 +158,9 @@ def step(
         a = w[u6 + i]
         b = w[u6 + N + i] * min(h, 0.01)
         total += a * a + b * b
-    total /= m[TOLERANCE] * m[TOLERANCE]
     for n in range(2 * N, size):
-        total += (w[u6 + n] / STATE_TOLERANCE) ** 2
+        total += (w[u6 + n] / STATE_RATIO) ** 2
+    total /= m[TOLERANCE] * m[TOLERANCE]
     prescribe(m, d, w, s, t + h, NEXT)
     return math.sqrt(total / size)
 
