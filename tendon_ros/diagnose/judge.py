@@ -113,7 +113,7 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     others = [r.fit.cost for r in found.rivals[k] if r.candidate not in equal]
     ahead = (min(others) - final.cost) / samples / worth if others else 1.0
     explained = (found.start.cost - final.cost) / samples
-    form = form_power(found.start, final)
+    form = form_power(problem, found.start, final)
     return Signs(worth, gains[1], left, explained, form, ahead, len(final.model.causes))
 
 

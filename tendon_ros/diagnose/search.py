@@ -32,6 +32,8 @@ MOST = 5  # causes
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.3
 ROUNDS = 4  # of challenges
+#: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
+COUNTED = 0.22
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 #: part of the noise's power that a cause must explain, over all samples and over one channel
@@ -205,7 +207,9 @@ class Search:
         :return: whether it explains more than noise and the form of the other laws can.
         """
         gain, in_one = self.gains(before, after)
-        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > form_power(start, before)
+        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > form_power(
+            self.problem, start, before
+        )
 
     def open_question(self, state: Fit) -> bool:
         """
@@ -313,18 +317,24 @@ class Search:
         return None
 
 
-def form_power(start: Fit, state: Fit) -> float:
+def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     """
     Return what the laws of the causes may leave although they are the right ones.
 
+    :param problem: the data.
     :param start: without any cause.
     :param state: with them.
     :return: in noise power per sample.
     """
     if not state.model.causes:
         return 0.0
+    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
+    forms = [
+        COUNTED if find(c.effect).hook == 'budget' and c.place in driven else find(c.effect).form
+        for c in state.model.causes
+    ]
     explained = max(0.0, start.cost - state.cost) / len(state.left)
-    return max(find(c.effect).form for c in state.model.causes) ** 2 * explained
+    return max(forms) ** 2 * explained
 
 
 def tie(problem: Problem, final: Fit) -> float:

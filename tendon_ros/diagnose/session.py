@@ -108,7 +108,7 @@ def diagnose(
     left = search.problem.structured(believed.left)
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    form = form_power(found.start, believed)
+    form = form_power(search.problem, found.start, believed)
     causes = _causes(heard, search, found, final, accepted, chances)
     places = whereabouts(ready, found, chances, left)
     beyond = left_over(left, form)
