@@ -1,4 +1,4 @@
-"""Practice cases of another simulator with known truth; the rest by ``python -m bench.practice``."""
+"""Practice cases of another simulator with known truth; all ten: ``python -m bench.practice``."""
 
 import json
 
