@@ -4,7 +4,7 @@ From fits to probabilities: how far to believe what was found.
 A likelihood that took thousands of correlated samples for independent would be certain of
 anything. What speaks for a cause is measured instead by numbers that do not grow with the length
 of a recording, and calibrated on the development seeds of the blind benchmark by logistic
-regression (``tendon blind calibrate``; docs/blind.md has the curve).
+regression (``python -m bench.calibrate``).
 """
 
 from __future__ import annotations
@@ -109,8 +109,8 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     samples = len(final.left)
     left = problem.structured(final.left)
     worth = max(gains[0], 1e-9)
-    equal = {r.candidate for r in equals(problem, final.model.causes[k], found.rivals[k], final)}
-    others = [r.fit.cost for r in found.rivals[k] if r.candidate not in equal]
+    near = tie(problem, final) * samples
+    others = [r.fit.cost for r in found.rivals[k] if r.fit.cost - final.cost > near]
     ahead = (min(others) - final.cost) / samples / worth if others else 1.0
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)

@@ -16,15 +16,14 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
-from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Step, Trace
-from tendon_ros.diagnose.evidence import Rival as Weighed
+from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Rival, Step, Trace
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intervals import (
     deviations,
     mean_square_interval,
     parameter_intervals,
 )
-from tendon_ros.diagnose.judge import equals, left_over, probability, signs_of
+from tendon_ros.diagnose.judge import equals, left_over, probability, Signs, signs_of
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.next_step import next_experiments
@@ -56,12 +55,26 @@ NAMED = 0.5
 
 
 @dataclass(frozen=True)
+class Weighed:
+    """A cause that was considered to the end, whoever equals it, and what speaks for it."""
+
+    cause: Candidate
+    equal: tuple[Candidate, ...]
+    signs: Signs
+
+
+@dataclass(frozen=True)
 class Outcome:
-    """The verdict, what it rests on, and the instrument with the accepted effects."""
+    """
+    The verdict, what it rests on, and the instrument with the accepted effects.
+
+    ``weighed`` are all causes that the search ended with, believed or not: calibration needs them.
+    """
 
     diagnosis: Diagnosis
     evidence: Evidence
     instrument: Instrument
+    weighed: tuple[Weighed, ...]
 
 
 def diagnose(
@@ -94,10 +107,17 @@ def diagnose(
     search = Search(ready.problem, candidates, jobs, report, memory)
     found = search.run()
     report('judging', 0.85)
-    chances = [
-        probability(signs_of(search.problem, found, k, search.gains(without, found.final)))
-        for k, without in enumerate(found.without)
-    ]
+    weighed = tuple(
+        Weighed(
+            cause,
+            tuple(
+                r.candidate for r in equals(search.problem, cause, found.rivals[k], found.final)
+            ),
+            signs_of(search.problem, found, k, search.gains(found.without[k], found.final)),
+        )
+        for k, cause in enumerate(found.final.model.causes)
+    )
+    chances = [probability(w.signs) for w in weighed]
     accepted = [k for k, p in enumerate(chances) if p >= NAMED]
     model = found.final.model
     for k in reversed([k for k, p in enumerate(chances) if p < NAMED]):
@@ -109,7 +129,7 @@ def diagnose(
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
     form = form_power(search.problem, found.start, believed)
-    causes = _causes(heard, search, found, final, accepted, chances)
+    causes = _causes(heard, found, final, [weighed[k] for k in accepted])
     places = whereabouts(ready, found, chances, left)
     beyond = left_over(left, form)
     gaps = _gaps(heard, final.model)
@@ -145,29 +165,23 @@ def diagnose(
         seconds=time.monotonic() - began,
     )
     report('done', 1.0)
-    return Outcome(diagnosis, evidence, repaired)
+    return Outcome(diagnosis, evidence, repaired, weighed)
 
 
-def _causes(
-    heard: Prepared,
-    search: Search,
-    found: Found,
-    final: Fit,
-    accepted: Sequence[int],
-    chances: Sequence[float],
-) -> list[Cause]:
+def _causes(heard: Prepared, found: Found, final: Fit, accepted: Sequence[Weighed]) -> list[Cause]:
     intervals = parameter_intervals(heard.problem, final)
+    order = list(found.final.model.causes)
     causes = []
-    for n, k in enumerate(accepted):
-        cause = found.final.model.causes[k]
+    for n, weighed in enumerate(accepted):
+        cause = weighed.cause
         values = final.model.values(n)
-        same = equals(search.problem, cause, found.rivals[k], found.final)
-        names = list(dict.fromkeys((r.candidate.effect, r.candidate.place) for r in same))
+        without = found.without[order.index(cause)].model
+        names = dict.fromkeys((c.effect, c.place) for c in weighed.equal)
         causes.append(
             Cause(
                 effect=cause.effect,
                 place=cause.place,
-                probability=chances[k],
+                probability=probability(weighed.signs),
                 parameters={
                     p.name: FittedParameter(
                         value=values[p.name], unit=p.unit, ci95=intervals[n][p.name]
@@ -175,7 +189,7 @@ def _causes(
                     for p in cause.parameters
                 },
                 indistinguishable=tuple(Named(effect=e, place=p) for e, p in names),
-                shrink=_shrink(heard.held, found.start.model, found.without[k].model, final.model),
+                shrink=_shrink(heard.held, found.start.model, without, final.model),
             )
         )
     return causes
@@ -407,9 +421,9 @@ def _moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
     )
 
 
-def _rivals(found: Found) -> tuple[Weighed, ...]:
+def _rivals(found: Found) -> tuple[Rival, ...]:
     total = max(found.start.cost, 1e-30)
     return tuple(
-        Weighed(p.candidate.effect, p.candidate.place, min(1.0, p.gain / total))
+        Rival(p.candidate.effect, p.candidate.place, min(1.0, p.gain / total))
         for p in found.proposals[:30]
     )

@@ -1,0 +1,89 @@
+"""
+Calibrates the probabilities of a diagnosis on development seeds of the blind benchmark.
+
+``python -m bench.calibrate SEED CASES KEPT.jsonl`` diagnoses development cases in two processes,
+keeps what speaks for each cause and whether it is true, and prints the weights of a logistic
+regression for ``tendon_ros/diagnose/judge.py``. Cases that are kept already are not run again, so
+that a campaign can be continued and enlarged.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import as_completed, ProcessPoolExecutor
+from dataclasses import asdict
+import json
+from pathlib import Path
+import sys
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from tendon_ros.base.threads import use_one_thread
+from tendon_ros.blind.case import made
+from tendon_ros.diagnose.judge import Signs
+from tendon_ros.diagnose.session import diagnose
+
+DEVELOPMENT = 1000  # seeds below are for development
+RIDGE = 0.3  # weights of a hundred causes must not run away
+
+
+def one(seed: int, index: int) -> dict[str, Any]:
+    """Diagnose one case, and say what spoke for each cause and whether it is true."""
+    case = made(seed, index)
+    outcome = diagnose(
+        list(case.recordings.values()), case.instrument, withhold=case.withhold, jobs=1
+    )
+    truth = {(e['effect'], e['place']) for e in case.label['effects']}
+    rows = [
+        {
+            'cause': f'{w.cause.effect}@{w.cause.place}',
+            'true': bool({(c.effect, c.place) for c in (w.cause, *w.equal)} & truth),
+            'signs': asdict(w.signs),
+        }
+        for w in outcome.weighed
+    ]
+    return {'seed': seed, 'index': index, 'stratum': case.label['stratum'], 'causes': rows}
+
+
+def weights(rows: list[dict[str, Any]]) -> np.ndarray:
+    """Return the weights of a logistic regression of truth on the signs."""
+    inputs = np.array([Signs(**r['signs']).features for r in rows])
+    truth = np.array([r['true'] for r in rows], dtype=np.float64)
+
+    def loss(w: np.ndarray) -> float:
+        score = inputs @ w
+        return float(np.sum(np.logaddexp(0.0, score) - truth * score) + RIDGE * w[1:] @ w[1:])
+
+    found: np.ndarray = minimize(loss, np.zeros(inputs.shape[1])).x
+    return found
+
+
+def main() -> None:
+    """Run what is missing, then print the weights and how they do."""
+    use_one_thread()
+    seed, cases, path = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
+    if seed >= DEVELOPMENT:
+        raise SystemExit(f'seed {seed}: is for publishing; calibrate on seeds below {DEVELOPMENT}')
+    kept = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    known = {(k['seed'], k['index']) for k in kept}
+    todo = [i for i in range(cases) if (seed, i) not in known]
+    with ProcessPoolExecutor(2) as pool, path.open('a') as file:
+        for future in as_completed([pool.submit(one, seed, i) for i in todo]):
+            kept.append(future.result())
+            print(json.dumps(kept[-1]), file=file, flush=True)
+            print(f'{len(kept)} cases', file=sys.stderr)
+    rows = [r for k in kept for r in k['causes']]
+    found = weights(rows)
+    print('WEIGHTS =', np.round(found, 2).tolist())
+    chance = 1.0 / (1.0 + np.exp(-np.array([Signs(**r['signs']).features for r in rows]) @ found))
+    truth = np.array([r['true'] for r in rows])
+    for low in np.arange(0.0, 1.0, 0.2):
+        inside = (chance >= low) & (chance < low + 0.2 + 1e-9)
+        if inside.any():
+            said, held = chance[inside].mean(), truth[inside].mean()
+            print(f'{low:.1f}-{low + 0.2:.1f}: {inside.sum()}, said {said:.2f}, true {held:.2f}')
+
+
+if __name__ == '__main__':
+    main()
