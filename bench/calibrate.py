@@ -31,9 +31,8 @@ RIDGE = 0.3  # weights of a hundred causes must not run away
 def one(seed: int, index: int) -> dict[str, Any]:
     """Diagnose one case, and say what spoke for each cause and whether it is true."""
     case = made(seed, index)
-    outcome = diagnose(
-        list(case.recordings.values()), case.instrument, withhold=case.withhold, jobs=1
-    )
+    recordings = list(case.recordings.values())
+    outcome = diagnose(recordings, case.instrument, withhold=case.withhold, jobs=1, plan=False)
     truth = {(e['effect'], e['place']) for e in case.label['effects']}
     rows = [
         {

@@ -29,8 +29,8 @@ class Signs:
 
     ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
     channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``form``: what their laws may leave of that; ``ahead``: misfit of the best
-    other candidate in its place, beyond its own, as part of ``worth``; ``causes``: how many there
+    causes explain; ``form``: what their laws may leave of that; ``ahead``: misfit of the
+    best other candidate that is not its equal, in ties; ``causes``: how many there
     are.
     """
 
@@ -51,7 +51,7 @@ class Signs:
                 1.0,
                 math.log10(worth),
                 math.log10(min(max(self.left / (LEFT_NOISE + self.form), 1e-2), 30.0)),
-                math.log10(min(max(self.ahead, 1e-3), 1.0)),
+                math.log10(min(max(self.ahead, 1.0), 100.0)),
                 float(self.causes - 1),
                 math.log10(min(max(self.worth / max(self.explained, 1e-9), 1e-4), 1.0)),
             ]
@@ -109,9 +109,9 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     samples = len(final.left)
     left = problem.structured(final.left)
     worth = max(gains[0], 1e-9)
-    near = tie(problem, final) * samples
-    others = [r.fit.cost for r in found.rivals[k] if r.fit.cost - final.cost > near]
-    ahead = (min(others) - final.cost) / samples / worth if others else 1.0
+    near = tie(problem, final)
+    others = [(r.fit.cost - final.cost) / samples for r in found.rivals[k]]
+    ahead = min((o for o in others if o > near), default=100.0 * near) / near
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)
     return Signs(worth, gains[1], left, explained, form, ahead, len(final.model.causes))

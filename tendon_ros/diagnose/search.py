@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 CORRECTED = 36  # proposals that are judged again at their own size
-CLOSE = 5  # rivals that are fitted as carefully as the cause itself
+CLOSE = 4  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # candidates that are fitted at each step
 MOST = 5  # causes
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
@@ -290,11 +290,10 @@ class Search:
         near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
         near += tie(self.problem, state) * len(state.left)
         close = [r for r in rivals if r.fit.cost < near][:CLOSE]
-        known = self.problem.slopes(state)
 
         def careful(rival: Rival) -> Fit:
             # derivatives of another state stall a fit: two places then seem to differ that do not
-            return self._settled(rival.fit.model, known)
+            return self.problem.fitted(rival.fit.model, rounds=10, accuracy=1e-3)
 
         fits = list(self._pool.map(careful, close))
         sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]

@@ -83,6 +83,7 @@ def diagnose(
     *,
     withhold: Sequence[str] = (),
     jobs: int = 2,
+    plan: bool = True,
     report: Report = lambda _what, _done: None,
     memory: Memory | None = None,
 ) -> Outcome:
@@ -93,6 +94,7 @@ def diagnose(
     :param instrument: its file.
     :param withhold: effects to do without, ``EFFECT`` or ``EFFECT@PLACE``.
     :param jobs: threads.
+    :param plan: whether to look for the next experiment.
     :param report: called with what is being done and the part that is done, 0 to 1.
     :param memory: keeps the steps, so that an interrupted run goes on.
     :return: the outcome.
@@ -139,7 +141,9 @@ def diagnose(
     loops = closed_loop_gap(intake.recordings, instrument, repaired, segments)
     verdict = _verdict(causes, beyond)
     report('looking for what would separate the rest', 0.95)
-    ahead = next_experiments(instrument, sorted(measured), ready.problem, found, jobs)
+    ahead = (
+        next_experiments(instrument, sorted(measured), ready.problem, found, jobs) if plan else ()
+    )
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=gaps,

@@ -24,6 +24,7 @@ from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
 
+FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
 NEIGHBOURS = 5  # bins between which noise is a difference and motion is not
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
@@ -293,11 +294,13 @@ class Problem:
                 continue
             step = own[NEIGHBOURS:] - own[:-NEIGHBOURS]
             noise = 0.5 * float(step @ step) * len(own) / len(step)
+            # what keeps below the floor is no gap, whatever its shape: counts of a still encoder
+            beyond = min(float(own @ own) - noise, float(own @ own) - FLOOR * len(own))
             entry = power.setdefault(self._segments[n].measured[c].sensor.channel, [0.0, 0.0])
-            entry[0] += float(own @ own) - noise
+            entry[0] += max(0.0, beyond)
             entry[1] += len(own)
         whole = sum(e[0] for e in power.values()) / max(sum(e[1] for e in power.values()), 1.0)
-        return max(0.0, whole), max((e[0] / e[1] for e in power.values()), default=0.0)
+        return whole, max((e[0] / e[1] for e in power.values() if e[1]), default=0.0)
 
     def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:
         """
