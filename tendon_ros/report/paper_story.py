@@ -63,13 +63,15 @@ class Finding:
     One withheld effect and what the diagnosis says of it.
 
     ``cause`` is the one that names it, or that it is said to be indistinguishable from; None where
-    there is none. ``instead`` are the causes named at its place that are not true.
+    there is none. ``instead`` are the causes named at its place that are not true; ``chance`` is
+    the probability that it was given, named or not.
     """
 
     claim: Claim
     truth: Use3
     cause: Cause | None
     instead: tuple[Cause, ...]
+    chance: float
 
     @property
     def exactly(self) -> bool:
@@ -134,7 +136,7 @@ def paper_story(
         np.asarray(cell.value),
         _rests(time, cell.value),
         tuple(rungs),
-        tuple(_findings(diagnosis.causes)),
+        tuple(_findings(diagnosis)),
         _wrong(diagnosis.causes),
     )
 
@@ -221,8 +223,10 @@ def _is_bristle(use: EffectUse, named: set[tuple[str, str]]) -> bool:
     return use.effect == 'presliding_friction' and (use.effect, use.place) not in named
 
 
-def _findings(causes: Sequence[Cause]) -> list[Finding]:
+def _findings(diagnosis: Diagnosis) -> list[Finding]:
     true = {use[:2] for use in WITHHELD}
+    causes = diagnosis.causes
+    chances = {(c.effect, c.place): c.probability for c in diagnosis.candidates}
     rows = []
     for claim in CLAIMS:
         for truth in WITHHELD:
@@ -232,7 +236,9 @@ def _findings(causes: Sequence[Cause]) -> list[Finding]:
             same = [c for c in causes if truth[:2] in {(o.effect, o.place)
                                                        for o in c.indistinguishable}]  # fmt: skip
             instead = [c for c in causes if c.place == truth[1] and _key(c) not in true]
-            rows.append(Finding(claim, truth, next(iter(exact + same), None), tuple(instead)))
+            cause = next(iter(exact + same), None)
+            chance = chances.get((truth[0], truth[1]), 0.0)
+            rows.append(Finding(claim, truth, cause, tuple(instead), chance))
     return rows
 
 
@@ -248,7 +254,7 @@ def _wrong(causes: Sequence[Cause]) -> tuple[Cause, ...]:
 def _verdict(finding: Finding) -> str:
     cause = finding.cause
     if cause is None:
-        text = 'not named'
+        text = f'not named ({percent(finding.chance)})'
         if finding.instead:
             said = [inside(effect_words(c.effect, c.place)) for c in finding.instead]
             text += f'; instead {joined(said)}'

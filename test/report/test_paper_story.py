@@ -15,6 +15,14 @@ from tendon_ros.model.trajectory_profiles import paper_fig12
 from tendon_ros.report.paper_story import CLAIMS, paper_story, rung_rows, told
 from tendon_ros.report.paper_story_page import story_page, summary
 
+#: a candidate that was given too little to be named
+HELD_BACK = {
+    'effect': 'pretension',
+    'place': 'cable_L3',
+    'probability': 0.3,
+    'identifiable': True,
+}
+
 SLIP = ('cable_slip', 'cable_L3', {'jump': 1e-5, 'time': 9.7})
 
 
@@ -40,7 +48,7 @@ def diagnosis(*causes):
             'gap': (),
             'where': (),
             'causes': causes,
-            'candidates': (),
+            'candidates': (HELD_BACK,),
             'unexplained': {'probability': 0.1},
         }
     )
@@ -95,7 +103,7 @@ def test_wrong_cause_is_said_to_be_wrong(stand, profile):
     assert [c.effect for c in story.findings[0].instead] == ['cable_slip']
     assert story.rungs[-1].label == '+ what else was named'
     text = told(story)
-    assert 'Pretension of cable L3: not named; instead cable L3 slip' in text
+    assert 'Pretension of cable L3: not named (30 %); instead cable L3 slip' in text
     assert 'Cable L3 slip: named with 90 %, and not true' in text
     assert 'wrongly named: cable L3 slip (90' in summary(story)
 
