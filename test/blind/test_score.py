@@ -163,7 +163,7 @@ def test_a_run_sees_no_labels_goes_on_and_is_scored(tmp_path, monkeypatch):
     hidden.rename(tmp_path / 'hidden')
     seen = []
 
-    def diagnose(recordings, instrument, withhold):
+    def diagnose(recordings, instrument, withhold, jobs, plan):
         seen.append(withhold)
         assert [r.name for r in recordings] == ['contact', 'free', 'mixed']
         assert instrument.name == 'bench_rig'
