@@ -34,7 +34,7 @@ def next_experiments(
     chosen: list[tuple[Suggestion, NextExperiment]] = []
     model = found.final.model
     for k, cause in enumerate(model.causes):
-        rivals = equals(problem, cause, found.rivals[k], found.final)[:PAIRS]
+        rivals = equals(problem, found, k)[:PAIRS]
         others = [c.use(model.values(n)) for n, c in enumerate(model.causes) if n != k]
         settled = replace(instrument, effects=(*instrument.effects, *others))
         pairs = [((cause, model.values(k)), (r.candidate, r.fit.model.values(-1))) for r in rivals]

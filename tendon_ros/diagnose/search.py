@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 CORRECTED = 36  # proposals that are judged again at their own size
-CLOSE = 4  # rivals that are fitted as carefully as the cause itself
+CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # candidates that are fitted at each step
 MOST = 5  # causes
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
@@ -276,32 +276,38 @@ class Search:
                     without = self.problem.fitted(smaller, known, rounds=8, accuracy=1e-3)
                     rivals = self.fitted(without, self.screened(without, leave=[cause]))
                 found.without.append(without)
-                rivals = self._sharpened(state, without, rivals)
+                rivals = self._sharpened(found, without, rivals)
                 found.rivals.append(rivals)
-                better = self._better(state, cause, rivals) if left else None
+                better = self._better(found, cause, rivals) if left else None
                 if better is not None:
                     break
             if better is None:
                 break
             found.states[-1] = better
 
-    def _sharpened(self, state: Fit, without: Fit, rivals: list[Rival]) -> list[Rival]:
+    def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
         """Fit the rivals that come near as carefully as the cause that they challenge."""
+        state = found.final
         near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
-        near += tie(self.problem, state) * len(state.left)
+        near += tie(self.problem, found.start, state) * len(state.left)
         close = [r for r in rivals if r.fit.cost < near][:CLOSE]
+        equal = state.cost + tie(self.problem, found.start, state) * len(state.left)
 
         def careful(rival: Rival) -> Fit:
             # derivatives of another state stall a fit: two places then seem to differ that do not
-            return self.problem.fitted(rival.fit.model, rounds=10, accuracy=1e-3)
+            fit = self.problem.fitted(rival.fit.model, rounds=10, accuracy=1e-3)
+            if fit.cost <= equal:
+                return fit
+            return self.problem.fitted(fit.model, rounds=6, accuracy=1e-3)
 
         fits = list(self._pool.map(careful, close))
         sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
         return sorted([*sharp, *(r for r in rivals if r not in close)], key=_judged)
 
-    def _better(self, state: Fit, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
+    def _better(self, found: Found, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
         """Return a fit with another candidate: one that fits better, or as well and is simpler."""
-        allowed = tie(self.problem, state)
+        state = found.final
+        allowed = tie(self.problem, found.start, state)
         simple = [
             r
             for r in rivals
@@ -336,15 +342,17 @@ def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     return max(forms) ** 2 * explained
 
 
-def tie(problem: Problem, final: Fit) -> float:
+def tie(problem: Problem, start: Fit, final: Fit) -> float:
     """
     Return the misfit beyond the best within which two explanations are equal.
 
     :param problem: the data.
+    :param start: without any cause.
     :param final: the best.
     :return: in noise power per sample.
     """
-    return TIE + TIE_FORM * problem.structured(final.left)
+    form = form_power(problem, start, final)
+    return TIE + form + TIE_FORM * problem.structured(final.left)
 
 
 def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float) -> bool:

@@ -112,9 +112,7 @@ def diagnose(
     weighed = tuple(
         Weighed(
             cause,
-            tuple(
-                r.candidate for r in equals(search.problem, cause, found.rivals[k], found.final)
-            ),
+            tuple(r.candidate for r in equals(search.problem, found, k)),
             signs_of(search.problem, found, k, search.gains(found.without[k], found.final)),
         )
         for k, cause in enumerate(found.final.model.causes)
