@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.search import form_power, Found, Rival, tie
-from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
 

@@ -31,6 +31,8 @@ MOST = 5  # causes
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.3
+#: and the most that the form of their laws excuses: two laws of creep are still not one of friction
+TIE_LAW = 0.06
 ROUNDS = 4  # of challenges
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
@@ -351,7 +353,8 @@ def tie(problem: Problem, start: Fit, final: Fit) -> float:
     :param final: the best.
     :return: in noise power per sample.
     """
-    form = form_power(problem, start, final)
+    explained = max(0.0, start.cost - final.cost) / len(final.left)
+    form = min(form_power(problem, start, final), TIE_LAW**2 * explained)
     return TIE + form + TIE_FORM * problem.structured(final.left)
 
 
