@@ -31,7 +31,7 @@ MOST = 5  # causes
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.3
-#: and the most that the form of their laws excuses: two laws of creep are still not one of friction
+#: and the most that the form of their laws excuses: creep may leave much, and yet be no friction
 TIE_LAW = 0.06
 ROUNDS = 4  # of challenges
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less

@@ -32,8 +32,8 @@ RING = 64
 PLACES: Mapping[str, Mapping[str, str]] = {
     'm': {
         'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'LASH': 'N', 'RADIUS': 'M*WIDTH',
-        'ARM': 'M*WIDTH', 'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M',
-        'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
+        'ARM': 'M*WIDTH', 'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M',
+        'CURVE_START': 'M', 'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
         'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
         'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U', 'KP': 'U',
         'KI': 'U', 'KD': 'U', 'LIMIT': 'U', 'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q',
@@ -51,8 +51,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     },
     'w': {
         'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N',
-        'ACCELERATION': 'N', 'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M', 'TENSION': 'M',
-        'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
+        'ACCELERATION': 'N', 'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M',
+        'TENSION': 'M', 'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
         'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
         'BUDGET_W': 'N', 'BUDGET_L': 'N', 'SIDE': 'N', 'GAP': 'K', 'FORCE': 'K', 'FORCE_Q': 'K',
         'FORCE_V': 'K', 'STATE_RATE': 'STATES', 'STATE_A': 'STATES', 'STATE_B': 'STATES',
