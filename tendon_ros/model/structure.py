@@ -52,7 +52,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     'w': {
         'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N',
         'ACCELERATION': 'N', 'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M',
-        'TENSION': 'M', 'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M', 'SLACK': 'M',
+        'TENSION': 'M', 'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M',
+        'SLACK': 'M',
         'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
         'BUDGET_W': 'N', 'BUDGET_L': 'N', 'SIDE': 'N', 'GAP': 'K', 'FORCE': 'K', 'FORCE_Q': 'K',
         'FORCE_V': 'K', 'STATE_RATE': 'STATES', 'STATE_A': 'STATES', 'STATE_B': 'STATES',
