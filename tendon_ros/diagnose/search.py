@@ -28,12 +28,13 @@ CORRECTED = 36  # proposals that are judged again at their own size
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # candidates that are fitted at each step
 MOST = 5  # causes
+MANY = 3  # causes from which on not every candidate challenges each of them
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.3
 #: and the most that the form of their laws excuses: creep may leave much, and yet be no friction
 TIE_LAW = 0.06
-ROUNDS = 4  # of challenges
+ROUNDS = 3  # of challenges
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
 #: part of the cost that one more parameter must save
@@ -140,17 +141,24 @@ class Search:
 
     # -- steps
 
-    def screened(self, state: Fit, leave: Sequence[Candidate] = ()) -> list[Proposal]:
+    def screened(
+        self,
+        state: Fit,
+        leave: Sequence[Candidate] = (),
+        among: Sequence[Candidate] | None = None,
+    ) -> list[Proposal]:
         """
         Return the best proposal of each candidate, best first.
 
         :param state: what holds already.
         :param leave: candidates to leave out.
+        :param among: those to ask; all where None.
         :return: the proposals.
         """
         screen = Screen(self.problem, state)
         out = {(c.effect, c.place) for c in (*state.model.causes, *leave)}
-        asked = [c for c in self.candidates if (c.effect, c.place) not in out]
+        everyone = self.candidates if among is None else among
+        asked = [c for c in everyone if (c.effect, c.place) not in out]
         first = [p for ps in self._pool.map(screen.proposals, asked) for p in ps[:2]]
         first.sort(key=lambda p: -p.gain)
         second = list(self._pool.map(screen.corrected, first[:CORRECTED])) + first[CORRECTED:]
@@ -276,7 +284,8 @@ class Search:
                 rivals = [r for r in found.first if r.candidate != cause]
                 if len(state.model.causes) > 1 or not rivals:
                     without = self.problem.fitted(smaller, known, rounds=8, accuracy=1e-3)
-                    rivals = self.fitted(without, self.screened(without, leave=[cause]))
+                    among = self._likely(found, cause)
+                    rivals = self.fitted(without, self.screened(without, [cause], among))
                 found.without.append(without)
                 rivals = self._sharpened(found, without, rivals)
                 found.rivals.append(rivals)
@@ -286,6 +295,14 @@ class Search:
             if better is None:
                 break
             found.states[-1] = better
+
+    def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
+        """Return who might replace one of many causes: its kin, and what explained much at first."""
+        if len(found.final.model.causes) < MANY:
+            return None
+        telling = [p.candidate for p in found.proposals[:CORRECTED]]
+        kin = [c for c in self.candidates if c.effect == cause.effect or c.place == cause.place]
+        return list(dict.fromkeys([*kin, *telling]))
 
     def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
         """Fit the rivals that come near as carefully as the cause that they challenge."""
