@@ -297,7 +297,7 @@ class Search:
             found.states[-1] = better
 
     def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
-        """Return who might replace one of many causes: its kin, and what explained much at first."""
+        """Return who might replace one of many causes: kin, and what explained much at first."""
         if len(found.final.model.causes) < MANY:
             return None
         telling = [p.candidate for p in found.proposals[:CORRECTED]]
