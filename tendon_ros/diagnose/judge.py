@@ -28,7 +28,7 @@ class Signs:
 
     ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
     channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``form``: what their laws may leave of that; ``causes``: how many there are.
+    causes explain; ``form``: what their laws may leave of that.
     """
 
     worth: float
@@ -36,7 +36,6 @@ class Signs:
     left: float
     explained: float
     form: float
-    causes: int
 
     @property
     def features(self) -> FloatArray:
@@ -48,14 +47,13 @@ class Signs:
                 1.0,
                 math.log10(worth),
                 math.log10(min(max(left, 1e-2), 30.0)),
-                float(self.causes - 1),
             ]
         )
 
 
 #: weights of the features, from 16 cases (26 causes) of development seed 11: few, so that the
 #: probabilities are rough; more cases make them better
-WEIGHTS = np.array([-0.61, 0.94, -1.66, -0.26])
+WEIGHTS = np.array([-1.24, 0.99, -1.91])
 
 
 def probability(signs: Signs) -> float:
@@ -108,7 +106,7 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     worth = max(gains[0], 1e-9)
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)
-    return Signs(worth, gains[1], left, explained, form, len(final.model.causes))
+    return Signs(worth, gains[1], left, explained, form)
 
 
 def left_over(left: float, form: float) -> float:
