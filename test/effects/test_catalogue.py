@@ -34,7 +34,7 @@ CONTRACT = {
     'asymmetric_friction': {'pulley'},
     'viscous_friction': {'pulley'},
     'pretension': {'cable'},
-    'cable_stiffness': {'cable'},
+    'cable_stiffness': {'cable', 'coupling'},  # the contract has cables; a shaft yields as well
     'cable_hysteresis': {'cable'},
     'cable_creep': {'cable'},
     'cable_slip': {'cable', 'coupling'},
