@@ -390,6 +390,6 @@ def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float
             return True
         if p.search == 'cycles' and values[p.name] < 1.0:
             return True
-        if p.search == 'shape' and values[p.name] < 2.0 * BRISTLE.centre:
+        if p.search == 'shape' and values[p.name] < BRISTLE.high:
             return True
     return False

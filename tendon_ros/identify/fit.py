@@ -29,8 +29,9 @@ NEIGHBOURS = 5  # bins between which noise is a difference and motion is not
 RETIMED = (-0.08, -0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.08)  # [s] that events are tried at
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
-#: dry friction builds up over a fraction of a degree in every bearing that was ever measured
-BRISTLE = Axis('angle', 'rad', 1e-6, 0.05, 1e-3, math.log(4.0), log=True, spread=1.0)
+#: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
+#: takes more than its upper end is pre-sliding friction by name
+BRISTLE = Axis('angle', 'rad', 1e-6, 3e-3, 1e-3, math.log(4.0), log=True, spread=1.0)
 
 
 @dataclass(frozen=True)
