@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from tendon_ros.cli.arguments import takes_bags
+
 HELP = 'say where the gap between recordings and model lies, and which effect causes it'
 
 
@@ -14,8 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     :param parser: of this verb.
     """
-    parser.add_argument('bag', nargs='+', metavar='BAG', help='folder, .mcap or .db3 file')
-    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    takes_bags(parser)
     parser.add_argument(
         '--out',
         required=True,
@@ -30,7 +31,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='do without this effect; can be given several times',
     )
     parser.add_argument('--jobs', type=int, metavar='N', help='threads; default: one a core')
-    parser.add_argument('--namespace', help='of the instrument, where a bag has several')
 
 
 def run(args: argparse.Namespace) -> None:

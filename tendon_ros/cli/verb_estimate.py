@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from tendon_ros.cli.arguments import takes_bags
+
 HELP = 'estimate the operating force and the inner pulleys from a bag'
 
 
@@ -14,8 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     :param parser: of this verb.
     """
-    parser.add_argument('bag', nargs='+', metavar='BAG', help='folder, .mcap or .db3 file')
-    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    takes_bags(parser)
     parser.add_argument(
         '--out',
         required=True,
@@ -38,7 +39,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='HZ',
         help='estimate no more often than this; default: always',
     )
-    parser.add_argument('--namespace', help='of the instrument, where a bag has several')
     parser.add_argument('--overwrite', action='store_true', help='replace what is there')
 
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tendon_ros.cli.arguments import takes_instrument
+
 if TYPE_CHECKING:
     from tendon_ros.diagnose.result import Diagnosis
     from tendon_ros.identify.excitation import Pair, Suggestion
@@ -28,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     :param parser: of this verb.
     """
-    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    takes_instrument(parser)
     parser.add_argument(
         '--separate',
         nargs='+',

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from tendon_ros.cli.arguments import takes_instrument
+
 HELP = 'simulate an instrument along a trajectory, straight to a bag'
 
 
@@ -14,7 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     :param parser: of this verb.
     """
-    parser.add_argument('--instrument', required=True, metavar='FILE.yaml', help='file or name')
+    takes_instrument(parser)
     parser.add_argument(
         '--trajectory', required=True, metavar='NAME|FILE.csv', help='see --trajectory list'
     )

@@ -33,8 +33,7 @@ def deviations(problem: Problem, fit: Fit) -> FloatArray:
     """
     axes = problem.axes(fit.model)
     prior = np.array([axis.spread**-2 for axis in axes])
-    normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(axes))
-    inverse = np.linalg.pinv(normal, hermitian=True)
+    inverse = problem.covariance(fit)
     meat = np.diag(prior)
     cluster = problem.clusters(CLUSTER)
     scores = fit.slope * fit.left[:, None]

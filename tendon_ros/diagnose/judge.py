@@ -15,7 +15,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.search import form_power, Found, Rival, tie
+from tendon_ros.diagnose.form import form_power, tie
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]

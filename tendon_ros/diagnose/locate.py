@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Where
-from tendon_ros.diagnose.search import Found
 from tendon_ros.diagnose.where import Places, regimes
 from tendon_ros.identify.fit import Problem
 
@@ -53,8 +53,7 @@ def whereabouts(
         _spread(powers, cause.place, gain, texts, believed * part)
         if believed < 0.5:
             # a doubtful cause says little of the place: ask the places themselves
-            start = replace(found.without[k])
-            for place, taken in Places(problem, start).shares(2):
+            for place, taken in Places(problem, found.without[k]).shares(2):
                 share = (1.0 - believed) * part * taken.sum() / max(gain.sum(), taken.sum(), 1e-9)
                 _spread(powers, place, np.maximum(taken, 0.0), texts, share)
     rest: dict[tuple[str, str], float] = {}

@@ -18,7 +18,7 @@ import numpy as np
 from tendon_ros import __version__
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Model
+from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_text import text_of
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from tendon_ros.base.errors import TendonError
+from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.result import NextExperiment
-from tendon_ros.diagnose.search import Found
 from tendon_ros.identify.excitation import separating, Suggestion, together
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import Instrument

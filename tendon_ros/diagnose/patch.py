@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tendon_ros.identify.fit import bristles, Model, Problem
+from tendon_ros.identify.explanation import bristles, Model
+from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
 
 

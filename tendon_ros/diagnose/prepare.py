@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.identify.fit import Model, NEIGHBOURS, Problem
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.residuals import NEIGHBOURS
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import (
     bin_length,

@@ -15,7 +15,6 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Verdict = Literal['no_gap', 'explained', 'partly_explained', 'unexplained']
 Interval = tuple[float, float]
-Probability = float
 
 
 class _Frozen(BaseModel):
@@ -75,7 +74,7 @@ class Cause(_Frozen):
 
     effect: str
     place: str
-    probability: Probability = Field(ge=0.0, le=1.0)
+    probability: float = Field(ge=0.0, le=1.0)
     parameters: Mapping[str, FittedParameter]
     indistinguishable: tuple[Candidate, ...] = ()
     shrink: Shrink
@@ -86,7 +85,7 @@ class Judged(_Frozen):
 
     effect: str
     place: str
-    probability: Probability = Field(ge=0.0, le=1.0)
+    probability: float = Field(ge=0.0, le=1.0)
     identifiable: bool
     why_not: str = ''
 
@@ -94,7 +93,7 @@ class Judged(_Frozen):
 class Unexplained(_Frozen):
     """The alternative 'none of these'."""
 
-    probability: Probability = Field(ge=0.0, le=1.0)
+    probability: float = Field(ge=0.0, le=1.0)
     where: tuple[str, ...] = ()
     regime: str = ''
 

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.form import degenerate, form_power, tie
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import BRISTLE, Fit, Model, Problem
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen
 
 FloatArray = NDArray[np.float64]
@@ -29,48 +30,11 @@ CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # candidates that are fitted at each step
 MOST = 5  # causes
 MANY = 3  # causes from which on not every candidate challenges each of them
-#: misfit beyond the best, in noise power per sample, within which two explanations are equal;
-#: and the same as a part of the structure that the best leaves
-TIE, TIE_FORM = 0.015, 0.3
-#: and the most that the form of their laws excuses: creep may leave much, and yet be no friction
-TIE_LAW = 0.06
 ROUNDS = 3  # of challenges
-#: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
-COUNTED = 0.22
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 #: part of the noise's power that a cause must explain, over all samples and over one channel
 LEAST, LEAST_IN_ONE = 0.03, 0.12
-
-
-@dataclass(frozen=True)
-class Rival:
-    """A candidate fitted in the place of a cause, or beside the causes."""
-
-    candidate: Candidate
-    fit: Fit
-
-
-@dataclass
-class Found:
-    """What the search has found: the states it went through, and who else would have done."""
-
-    states: list[Fit] = field(default_factory=list)
-    rivals: list[list[Rival]] = field(default_factory=list)
-    without: list[Fit] = field(default_factory=list)
-    proposals: list[Proposal] = field(default_factory=list)
-    next_best: list[Rival] = field(default_factory=list)
-    first: list[Rival] = field(default_factory=list)
-
-    @property
-    def start(self) -> Fit:
-        """The instrument file, its numbers moved within their tolerances."""
-        return self.states[0]
-
-    @property
-    def final(self) -> Fit:
-        """All causes."""
-        return self.states[-1]
 
 
 def _judged(rival: Rival) -> float:
@@ -339,57 +303,3 @@ class Search:
                 if rival in simple or trial.cost < 0.99 * state.cost:
                     return trial
         return None
-
-
-def form_power(problem: Problem, start: Fit, state: Fit) -> float:
-    """
-    Return what the laws of the causes may leave although they are the right ones.
-
-    :param problem: the data.
-    :param start: without any cause.
-    :param state: with them.
-    :return: in noise power per sample.
-    """
-    if not state.model.causes:
-        return 0.0
-    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
-    forms = [
-        COUNTED if find(c.effect).hook == 'budget' and c.place in driven else find(c.effect).form
-        for c in state.model.causes
-    ]
-    explained = max(0.0, start.cost - state.cost) / len(state.left)
-    return max(forms) ** 2 * explained
-
-
-def tie(problem: Problem, start: Fit, final: Fit) -> float:
-    """
-    Return the misfit beyond the best within which two explanations are equal.
-
-    :param problem: the data.
-    :param start: without any cause.
-    :param final: the best.
-    :return: in noise power per sample.
-    """
-    explained = max(0.0, start.cost - final.cost) / len(final.left)
-    form = min(form_power(problem, start, final), TIE_LAW**2 * explained)
-    return TIE + form + TIE_FORM * problem.structured(final.left)
-
-
-def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float) -> bool:
-    """
-    Return whether a fit has bent an effect into another that has a name of its own.
-
-    :param candidate: the effect.
-    :param values: of its parameters.
-    :param longest: duration of the longest recording [s].
-    :return: whether: an event that always lasts, a ripple without a period, bristles as short as
-        those of any dry friction.
-    """
-    for p in candidate.parameters:
-        if p.search == 'duration' and values[p.name] > 0.5 * longest:
-            return True
-        if p.search == 'cycles' and values[p.name] < 1.0:
-            return True
-        if p.search == 'shape' and values[p.name] < BRISTLE.high:
-            return True
-    return False

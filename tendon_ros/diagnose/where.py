@@ -77,9 +77,8 @@ class Places:
     """
 
     def __init__(self, problem: Problem, fit: Fit) -> None:
-        self._problem = problem
         self._left = problem.left(fit.model)
-        self._piece = problem.pieces(PIECE)
+        self._piece = problem.clusters(PIECE)
         count = int(self._piece.max()) + 1
         self._directions = {
             place: problem_direction
@@ -93,22 +92,15 @@ class Places:
         probes = _probes(instrument)
         found = []
         for place, candidate, values in probes:
-            try:
-                change = problem.left(fit.model.joined(candidate, values)) - self._left
-            except (KeyError, IndexError):
-                continue
+            change = problem.left(fit.model.joined(candidate, values)) - self._left
             if np.isfinite(change).all():
                 found.append((place, change))
-        for n, (segment, channel, _) in enumerate(problem.groups(self._left)):
-            del n
+        readings: dict[str, FloatArray] = {}
+        for segment, channel, span in problem.spans():
             sensor = problem.rollouts.segments[segment].measured[channel].sensor
-            unit = np.zeros_like(self._left)
-            for s, c, span in problem.spans():
-                if problem.rollouts.segments[s].measured[c].sensor.name == sensor.name:
-                    unit[span] = 1.0
             if sensor.kind != 'motor_torque':
-                found.append((sensor.name, unit))
-        return list(dict(found).items())
+                readings.setdefault(sensor.name, np.zeros_like(self._left))[span] = 1.0
+        return [*found, *readings.items()]
 
     def shares(self, most: int = 4) -> list[tuple[str, FloatArray]]:
         """

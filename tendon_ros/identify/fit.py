@@ -15,107 +15,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis, axis_of
-from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.rollout import Rollouts
-from tendon_ros.identify.tolerance import Tolerance
-from tendon_ros.model.instrument import EffectUse
+from tendon_ros.identify.explanation import BRISTLE, Model
+from tendon_ros.identify.residuals import Residuals
 
 FloatArray = NDArray[np.float64]
 
-FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
-NEIGHBOURS = 5  # bins between which noise is a difference and motion is not
 RETIMED = (-0.08, -0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.08)  # [s] that events are tried at
-SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
-
-#: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
-#: takes more than its upper end is pre-sliding friction by name
-BRISTLE = Axis('angle', 'rad', 1e-6, 3e-3, 1e-3, math.log(4.0), log=True, spread=1.0)
-
-
-@dataclass(frozen=True)
-class Model:
-    """
-    Causes with places on their axes, and what else moves.
-
-    ``z``: for each cause the places of its parameters; ``bristle``: by pulley place, for dry
-    friction without a pre-sliding angle of its own; ``moved``: of each tolerance, in its
-    deviations, shape (tolerances,).
-    """
-
-    causes: tuple[Candidate, ...]
-    z: tuple[tuple[float, ...], ...]
-    bristle: Mapping[str, float]
-    moved: FloatArray
-
-    def values(self, k: int) -> dict[str, float]:
-        """
-        Return the parameters of a cause.
-
-        :param k: which.
-        :return: values by name, SI units.
-        """
-        cause = self.causes[k]
-        return {
-            p.name: axis_of(p).value(z) for p, z in zip(cause.parameters, self.z[k], strict=True)
-        }
-
-    def without(self, k: int) -> Model:
-        """
-        Return the model without one cause, nothing refitted.
-
-        :param k: which.
-        :return: the smaller model.
-        """
-        causes = self.causes[:k] + self.causes[k + 1 :]
-        left = _dry_places(causes)
-        return Model(
-            causes,
-            self.z[:k] + self.z[k + 1 :],
-            {place: z for place, z in self.bristle.items() if place in left},
-            self.moved,
-        )
-
-    def joined(self, cause: Candidate, values: Mapping[str, float]) -> Model:
-        """
-        Return the model with one more cause.
-
-        :param cause: the cause.
-        :param values: of its parameters.
-        :return: the larger model.
-        """
-        causes = (*self.causes, cause)
-        row = tuple(axis_of(p).place(values[p.name]) for p in cause.parameters)
-        bristle = {place: self.bristle.get(place, 0.0) for place in _dry_places(causes)}
-        return Model(causes, (*self.z, row), bristle, self.moved)
-
-
-def _dry_places(causes: Sequence[Candidate]) -> list[str]:
-    """Return the pulleys whose dry friction needs an angle to build up over."""
-    dry = {c.place for c in causes if find(c.effect).hook == 'budget'}
-    own = {c.place for c in causes if c.effect == 'presliding_friction'}
-    return sorted(dry - own)
-
-
-def bristles(model: Model) -> list[EffectUse]:
-    """
-    Return the effects that let dry friction build up over an angle.
-
-    :param model: the model.
-    :return: one effect for each pulley with dry friction.
-    """
-    return [
-        EffectUse('presliding_friction', place, {'torque': 0.0, 'angle': BRISTLE.value(z)})
-        for place, z in model.bristle.items()
-    ]
-
-
-def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:
-    """Return when something suddenly changes."""
-    begun = [values[p.name] for p in cause.instants]
-    lasts = [values[p.name] for p in cause.parameters if p.search == 'duration']
-    return begun + [a + b for a in begun for b in lasts]
 
 
 @dataclass(frozen=True)
@@ -134,193 +40,8 @@ class Fit:
     cost: float
 
 
-class Problem:
-    """
-    The recordings as a least-squares problem.
-
-    :param rollouts: the model and what was measured.
-    :param tolerances: what may move.
-    :param used: which bins count, one mask (bins,) a segment.
-    """
-
-    def __init__(
-        self,
-        rollouts: Rollouts,
-        tolerances: Sequence[Tolerance],
-        used: Sequence[NDArray[np.bool_]],
-    ) -> None:
-        self.rollouts = rollouts
-        self.tolerances = tuple(tolerances)
-        self._segments = rollouts.segments
-        self._masks = tuple(
-            np.isfinite(measured) & mask
-            for measured, mask in zip(rollouts.measured, used, strict=True)
-        )
-        self._noise = tuple(
-            np.array([m.noise for m in s.measured]).reshape(-1, len(s.time))
-            for s in self._segments
-        )
-
-        times = [np.broadcast_to(s.time, m.shape)[m] for s, m in zip(
-            self._segments, self._masks, strict=True)]  # fmt: skip
-        self._time = np.concatenate(times)
-        self._segment = np.repeat(np.arange(len(times)), [len(t) for t in times])
-
-    @property
-    def masks(self) -> tuple[NDArray[np.bool_], ...]:
-        """Which samples count: one (channels, bins) a segment."""
-        return self._masks
-
-    @property
-    def empty(self) -> Model:
-        """The instrument file as it is."""
-        return Model((), (), {}, np.zeros(len(self.tolerances)))
-
-    def uses(self, model: Model) -> list[list[EffectUse]]:
-        """
-        Return the effects of a model for each segment.
-
-        :param model: the model.
-        :return: effects by segment.
-        """
-        always = [
-            EffectUse(t.effect, t.place, {find(t.effect).parameters[0].name: t.axis.value(z)})
-            for t, z in self.moved(model)
-        ]
-        always += bristles(model)
-        own = [cause.use(model.values(k)) for k, cause in enumerate(model.causes)]
-        return [
-            always + [use for c, use in zip(model.causes, own, strict=True) if c.acts_in(s.name)]
-            for s in self._segments
-        ]
-
-    def moved(self, model: Model) -> list[tuple[Tolerance, float]]:
-        """
-        Return the tolerances that have moved, but for those that a cause stands for.
-
-        :param model: the model.
-        :return: each with its place on its axis.
-        """
-        owned = {(c.effect, c.place) for c in model.causes}
-        return [
-            (t, float(z))
-            for t, z in zip(self.tolerances, model.moved, strict=True)
-            if z != 0.0 and (t.effect, t.place) not in owned
-        ]
-
-    def left(self, model: Model) -> FloatArray:
-        """
-        Return what is left of each sample that counts, in noise deviations.
-
-        :param model: the model.
-        :return: measured less predicted, shape (samples,).
-        """
-        predicted = self.rollouts.predicted(self.uses(model))
-        left = self.flat([m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)])
-        for k, cause in enumerate(model.causes):
-            for instant in _instants(cause, model.values(k)):
-                near = self._near(cause, instant)
-                left[near] = np.clip(left[near], -2.0, 2.0)
-        return left
-
-    def _near(self, cause: Candidate, instant: float) -> NDArray[np.bool_]:
-        """Return the samples so near an event that how it came about matters."""
-        acting = np.array([cause.acts_in(s.name) for s in self._segments])
-        near: NDArray[np.bool_] = np.abs(self._time - instant) < SUDDEN
-        there: NDArray[np.bool_] = near & acting[self._segment]
-        return there
-
-    def flat(self, rows: Sequence[FloatArray]) -> FloatArray:
-        """
-        Return arrays (channels, bins) as one vector of what counts, in noise deviations.
-
-        :param rows: one array a segment.
-        :return: shape (samples,).
-        """
-        parts = [
-            (row / noise)[mask]
-            for row, noise, mask in zip(rows, self._noise, self._masks, strict=True)
-        ]
-        return np.concatenate(parts)
-
-    def clusters(self, length: float) -> NDArray[np.int64]:
-        """
-        Return which stretch of time each sample belongs to.
-
-        :param length: of a stretch [s].
-        :return: numbers from zero, shape (samples,).
-        """
-        own = np.floor(self._time / length).astype(np.int64)
-        _, numbered = np.unique(np.stack([self._segment, own]), axis=1, return_inverse=True)
-        return numbered.reshape(-1).astype(np.int64)
-
-    def pieces(self, length: float) -> NDArray[np.int64]:
-        """
-        Return which piece of a recording each sample belongs to, whatever its channel.
-
-        :param length: of a piece [s].
-        :return: numbers from zero, shape (samples,).
-        """
-        return self.clusters(length)
-
-    def spans(self) -> list[tuple[int, int, slice]]:
-        """Return segment, channel, and where its samples lie in a vector."""
-        found = []
-        at = 0
-        for n, mask in enumerate(self._masks):
-            for c, row in enumerate(mask):
-                count = int(row.sum())
-                found.append((n, c, slice(at, at + count)))
-                at += count
-        return found
-
-    def structured(self, left: FloatArray) -> float:
-        """
-        Return the power of what is left that is not noise: what neighbouring bins share.
-
-        :param left: what is left, shape (samples,).
-        :return: mean square in noise deviations, noise taken off.
-        """
-        return self.structures(left)[0]
-
-    def structures(self, left: FloatArray) -> tuple[float, float]:
-        """
-        Return the same over all samples, and in the channel that has most of it.
-
-        :param left: what is left, shape (samples,).
-        :return: mean squares in noise deviations, noise taken off.
-        """
-        power: dict[str, list[float]] = {}
-        for n, c, own in self.groups(left):
-            if len(own) <= NEIGHBOURS:
-                continue
-            step = own[NEIGHBOURS:] - own[:-NEIGHBOURS]
-            noise = 0.5 * float(step @ step) * len(own) / len(step)
-            # what keeps below the floor is no gap, whatever its shape: counts of a still encoder
-            beyond = min(float(own @ own) - noise, float(own @ own) - FLOOR * len(own))
-            entry = power.setdefault(self._segments[n].measured[c].sensor.channel, [0.0, 0.0])
-            entry[0] += max(0.0, beyond)
-            entry[1] += len(own)
-        whole = sum(e[0] for e in power.values()) / max(sum(e[1] for e in power.values()), 1.0)
-        return whole, max((e[0] / e[1] for e in power.values() if e[1]), default=0.0)
-
-    def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:
-        """
-        Take a vector of samples apart again.
-
-        :param vector: shape (samples,).
-        :return: segment, channel, and its samples in the order of time.
-        """
-        found = []
-        at = 0
-        for n, mask in enumerate(self._masks):
-            for c, row in enumerate(mask):
-                count = int(row.sum())
-                found.append((n, c, vector[at : at + count]))
-                at += count
-        return found
-
-    # -- unknowns as one vector
+class Problem(Residuals):
+    """The recordings as a least-squares problem."""
 
     def pack(self, model: Model) -> FloatArray:
         """Return the unknowns of a model as one vector: causes, bristles, tolerances."""
@@ -496,13 +217,23 @@ class Problem:
         :return: columns, shape (samples,) each; those of tolerances that a cause stands for are
             left out.
         """
-        owned = {f'{t.place}.{t.quantity}' for t in self.tolerances} - {
-            f'{t.place}.{t.quantity}'
-            for t in self.tolerances
-            if (t.effect, t.place) not in {(c.effect, c.place) for c in fit.model.causes}
+        causes = {(c.effect, c.place) for c in fit.model.causes}
+        owned = {
+            f'{t.place}.{t.quantity}' for t in self.tolerances if (t.effect, t.place) in causes
         }
         return {
             label: fit.slope[:, j]
             for j, label in enumerate(self.labels(fit.model))
             if label not in owned
         }
+
+    def covariance(self, fit: Fit) -> FloatArray:
+        """
+        Return how well a fit knows its unknowns, were noise white and independent.
+
+        :param fit: the fit.
+        :return: shape (unknowns, unknowns), on their axes.
+        """
+        prior = np.array([axis.spread**-2 for axis in self.axes(fit.model)])
+        normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(prior))
+        return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)

@@ -46,10 +46,7 @@ class Screen:
     def __init__(self, problem: Problem, fit: Fit) -> None:
         self.problem = problem
         self.fit = fit
-        axes = problem.axes(fit.model)
-        prior = np.array([axis.spread**-2 for axis in axes])
-        normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(axes))
-        self._inverse = np.linalg.pinv(normal, hermitian=True)
+        self._inverse = problem.covariance(fit)
 
     def proposals(self, candidate: Candidate) -> list[Proposal]:
         """

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose.intake.step import motor_positions, Sifted
+from tendon_ros.diagnose.intake.step import motor_positions, Sifted, sifted
 from tendon_ros.model.instrument import Instrument
 
 #: overshoot and an encoder's offset that are forgiven [share of the limits' width]
@@ -25,15 +25,7 @@ def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Si
     :param instrument: with the limits of what may be commanded.
     :return: the others, and sentences.
     """
-    kept: list[Recording] = []
-    sentences: list[str] = []
-    for recording in recordings:
-        fault = _fault(recording, instrument)
-        if fault:
-            sentences.append(f'{recording.name}: {fault}')
-        else:
-            kept.append(recording)
-    return tuple(kept), sentences
+    return sifted(recordings, lambda recording: _fault(recording, instrument))
 
 
 def _fault(recording: Recording, instrument: Instrument) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from tendon_ros.base.recording import Channel, FloatArray, Recording
-from tendon_ros.diagnose.intake.step import motor_positions, shared_span, Sifted
+from tendon_ros.diagnose.intake.step import motor_positions, shared_span, Sifted, sifted
 from tendon_ros.model.instrument import Instrument, Sensor
 
 SHORTEST = 1.0  # [s]
@@ -25,15 +25,7 @@ def moving(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
     :param instrument: the network.
     :return: the others, and sentences.
     """
-    kept: list[Recording] = []
-    sentences: list[str] = []
-    for recording in recordings:
-        fault = _fault(recording, instrument)
-        if fault:
-            sentences.append(f'{recording.name}: {fault}')
-        else:
-            kept.append(recording)
-    return tuple(kept), sentences
+    return sifted(recordings, lambda recording: _fault(recording, instrument))
 
 
 def _fault(recording: Recording, instrument: Instrument) -> str:

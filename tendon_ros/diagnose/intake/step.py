@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,19 @@ from tendon_ros.model.instrument import Instrument, Sensor
 
 #: recordings that a check has left, and sentences on what it has not
 Sifted = tuple[tuple[Recording, ...], list[str]]
+
+
+def sifted(recordings: Sequence[Recording], fault: Callable[[Recording], str]) -> Sifted:
+    """
+    Leave out the recordings that have a fault.
+
+    :param recordings: what was measured.
+    :param fault: says what is wrong with one, and how to mend it; empty where nothing is.
+    :return: the others, and a sentence on each that was left out.
+    """
+    faults = [(recording, fault(recording)) for recording in recordings]
+    kept = tuple(recording for recording, text in faults if not text)
+    return kept, [f'{recording.name}: {text}' for recording, text in faults if text]
 
 
 def motor_positions(instrument: Instrument) -> tuple[str, ...]:

@@ -1,0 +1,46 @@
+"""What a search has found: the states it went through, and who else would have done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.screening import Proposal
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A candidate fitted in the place of a cause, or beside the causes."""
+
+    candidate: Candidate
+    fit: Fit
+
+
+@dataclass
+class Found:
+    """
+    Everything a search leaves behind.
+
+    ``states``: the start, then one for each cause that joined. ``rivals``, ``without``: for each
+    cause of the last state, who was fitted in its place, and the fit without it. ``proposals``:
+    of the first screening. ``next_best``: who was fitted last and not taken. ``first``: who was
+    fitted beside the first cause.
+    """
+
+    states: list[Fit] = field(default_factory=list)
+    rivals: list[list[Rival]] = field(default_factory=list)
+    without: list[Fit] = field(default_factory=list)
+    proposals: list[Proposal] = field(default_factory=list)
+    next_best: list[Rival] = field(default_factory=list)
+    first: list[Rival] = field(default_factory=list)
+
+    @property
+    def start(self) -> Fit:
+        """The instrument file, its numbers moved within their tolerances."""
+        return self.states[0]
+
+    @property
+    def final(self) -> Fit:
+        """All causes."""
+        return self.states[-1]

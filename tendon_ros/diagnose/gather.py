@@ -1,0 +1,130 @@
+"""What a diagnosis rests on, gathered for the report."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.gap import noise_of, unit_of
+from tendon_ros.diagnose.intervals import deviations
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
+
+SHOWN = 30  # rivals
+
+
+def traces(ready: Prepared, final: Model) -> tuple[Trace, ...]:
+    """
+    Return every channel of every recording, measured and predicted.
+
+    :param ready: the problem.
+    :param final: what is believed.
+    :return: the signals.
+    """
+    whole = ready.whole
+    before = whole.rollouts.predicted(whole.uses(whole.empty))
+    after = whole.rollouts.predicted(whole.uses(final))
+    found = []
+    for n, segment in enumerate(whole.rollouts.segments):
+        for c, measured in enumerate(segment.measured):
+            known = np.isfinite(measured.value)
+            if not known.any():
+                continue
+            found.append(
+                Trace(
+                    recording=segment.name,
+                    channel=measured.sensor.channel,
+                    unit=unit_of(measured.sensor.channel),
+                    time=segment.time[known],
+                    measured=measured.value[known],
+                    before=before[n][c][known],
+                    after=after[n][c][known],
+                    held_out=ready.held.masks[n][c][known],
+                )
+            )
+    return tuple(found)
+
+
+def steps(ready: Prepared, found: Found) -> tuple[Step, ...]:
+    """
+    Return the steps of the explanation.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :return: the gap after each cause.
+    """
+    rows = []
+    known: set[Candidate] = set()
+    for state in found.states:
+        new = [c for c in state.model.causes if c not in known]
+        known |= set(new)
+        held = ready.held.left(state.model)
+        rows.append(
+            Step(
+                effect=', '.join(c.effect for c in new),
+                place=', '.join(c.place for c in new),
+                gap=float(np.sqrt(np.mean(state.left**2))),
+                held_out=float(np.sqrt(np.mean(held**2))) if len(held) else 0.0,
+            )
+        )
+    return tuple(rows)
+
+
+def floors(problem: Problem) -> tuple[Floor, ...]:
+    """
+    Return the noise of each channel, and how it was found.
+
+    :param problem: the bins.
+    :return: the floors.
+    """
+    return tuple(
+        Floor(
+            channel,
+            unit_of(channel),
+            value,
+            'differences between neighbouring bins, and the counts of the motor encoders '
+            'sent through the model',
+        )
+        for channel, value in noise_of(problem).items()
+    )
+
+
+def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
+    """
+    Return the numbers of the file as they were fitted within their tolerances.
+
+    :param problem: the bins.
+    :param final: the fit of what is believed.
+    :return: the numbers with their intervals.
+    """
+    spread = deviations(problem, final)
+    own = len(spread) - len(problem.tolerances)
+    owned = {(c.effect, c.place) for c in final.model.causes}
+    return tuple(
+        Moved(
+            t.place,
+            t.quantity,
+            t.axis.value(z),
+            (t.axis.value(z - 2.0 * s), t.axis.value(z + 2.0 * s)),
+            t.axis.unit,
+        )
+        for t, z, s in zip(problem.tolerances, final.model.moved, spread[own:], strict=True)
+        if (t.effect, t.place) not in owned
+    )
+
+
+def rivals(found: Found) -> tuple[Rival, ...]:
+    """
+    Return what each candidate alone would explain.
+
+    :param found: what the search has found.
+    :return: most first.
+    """
+    total = max(found.start.cost, 1e-30)
+    return tuple(
+        Rival(p.candidate.effect, p.candidate.place, min(1.0, p.gain / total))
+        for p in found.proposals[:SHOWN]
+    )

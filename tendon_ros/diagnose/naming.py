@@ -1,0 +1,133 @@
+"""What is named: causes with their parameters, every candidate's probability, the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.gap import shrink_of
+from tendon_ros.diagnose.intervals import parameter_intervals
+from tendon_ros.diagnose.judge import probability, Signs
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.result import Candidate as Named
+from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit
+
+#: a cause is named from here on
+NAMED = 0.5
+#: norm of a signature in noise deviations below which an effect cannot be seen
+SHOWS = 5.0
+#: part of a signature that must be its own, not what tolerances and causes can do as well
+OWN = 0.05
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A cause that was considered to the end, whoever equals it, and what speaks for it."""
+
+    cause: Candidate
+    equal: tuple[Candidate, ...]
+    signs: Signs
+
+
+def causes_of(
+    heard: Prepared, found: Found, final: Fit, accepted: Sequence[Weighed]
+) -> list[Cause]:
+    """
+    Return the causes that are named.
+
+    :param heard: the problem.
+    :param found: what the search has found.
+    :param final: the fit of what is named.
+    :param accepted: what is named, in the order of that fit.
+    :return: the causes.
+    """
+    intervals = parameter_intervals(heard.problem, final)
+    order = list(found.final.model.causes)
+    causes = []
+    for n, weighed in enumerate(accepted):
+        cause = weighed.cause
+        values = final.model.values(n)
+        without = found.without[order.index(cause)].model
+        names = dict.fromkeys((c.effect, c.place) for c in weighed.equal)
+        causes.append(
+            Cause(
+                effect=cause.effect,
+                place=cause.place,
+                probability=probability(weighed.signs),
+                parameters={
+                    p.name: FittedParameter(
+                        value=values[p.name], unit=p.unit, ci95=intervals[n][p.name]
+                    )
+                    for p in cause.parameters
+                },
+                indistinguishable=tuple(Named(effect=e, place=p) for e, p in names),
+                shrink=shrink_of(heard.held, found.start.model, without, final.model),
+            )
+        )
+    return causes
+
+
+def verdict_of(causes: Sequence[Cause], beyond: float) -> Verdict:
+    """
+    Return the verdict.
+
+    :param causes: that are named.
+    :param beyond: probability that something of the gap has a cause that was not named.
+    :return: one word.
+    """
+    if beyond < NAMED:
+        return 'explained' if causes else 'no_gap'
+    return 'partly_explained' if causes else 'unexplained'
+
+
+def judged(
+    found: Found,
+    causes: Sequence[Cause],
+    chances: Sequence[float],
+    candidates: Sequence[Candidate],
+) -> tuple[Judged, ...]:
+    """
+    Return every candidate with its probability, and whether these data could have shown it.
+
+    :param found: what the search has found.
+    :param causes: that are named.
+    :param chances: of all causes that the search ended with.
+    :param candidates: all that may be named.
+    :return: most probable first.
+    """
+    named = {(c.effect, c.place): c for c in causes}
+    shared: dict[tuple[str, str], float] = {
+        (c.effect, c.place): p for c, p in zip(found.final.model.causes, chances, strict=True)
+    }
+    for cause in causes:
+        for other in cause.indistinguishable:
+            part = cause.probability / (1 + len(cause.indistinguishable))
+            shared[other.effect, other.place] = max(shared.get((other.effect, other.place), 0.0),
+                                                    part)  # fmt: skip
+    seen = {(p.candidate.effect, p.candidate.place): p for p in found.proposals}
+    rows = []
+    for candidate in candidates:
+        key = (candidate.effect, candidate.place)
+        proposal = seen.get(key)
+        why = ''
+        if key in named and named[key].indistinguishable:
+            others = ', '.join(f'{o.effect} at {o.place}' for o in named[key].indistinguishable)
+            why = f'the data cannot tell it from {others}'
+        elif proposal is None or proposal.seen < SHOWS:
+            why = 'at a size worth looking for it leaves no trace in these channels and motions'
+        elif proposal.own < OWN * proposal.seen:
+            why = 'what it does, the tolerances of the file do as well'
+        chance = named[key].probability if key in named else shared.get(key, 0.0)
+        rows.append(
+            Judged(
+                effect=candidate.effect,
+                place=candidate.place,
+                probability=chance,
+                identifiable=not why,
+                why_not=why,
+            )
+        )
+    return tuple(sorted(rows, key=lambda r: (-r.probability, r.identifiable)))

@@ -1,0 +1,102 @@
+"""
+An explanation: causes with their parameters, and what else of the instrument moves.
+
+Every unknown has a place on its axis, so that fits and priors need no units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.effects import find
+from tendon_ros.identify.axis import Axis, axis_of
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument import EffectUse
+
+FloatArray = NDArray[np.float64]
+
+#: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
+#: takes more than its upper end is pre-sliding friction by name
+BRISTLE = Axis('angle', 'rad', 1e-6, 3e-3, 1e-3, math.log(4.0), log=True, spread=1.0)
+
+
+@dataclass(frozen=True)
+class Model:
+    """
+    Causes with places on their axes, and what else moves.
+
+    ``z``: for each cause the places of its parameters; ``bristle``: by pulley place, for dry
+    friction without a pre-sliding angle of its own; ``moved``: of each tolerance, in its
+    deviations, shape (tolerances,).
+    """
+
+    causes: tuple[Candidate, ...]
+    z: tuple[tuple[float, ...], ...]
+    bristle: Mapping[str, float]
+    moved: FloatArray
+
+    def values(self, k: int) -> dict[str, float]:
+        """
+        Return the parameters of a cause.
+
+        :param k: which.
+        :return: values by name, SI units.
+        """
+        cause = self.causes[k]
+        return {
+            p.name: axis_of(p).value(z) for p, z in zip(cause.parameters, self.z[k], strict=True)
+        }
+
+    def without(self, k: int) -> Model:
+        """
+        Return the model without one cause, nothing refitted.
+
+        :param k: which.
+        :return: the smaller model.
+        """
+        causes = self.causes[:k] + self.causes[k + 1 :]
+        left = _dry_places(causes)
+        return Model(
+            causes,
+            self.z[:k] + self.z[k + 1 :],
+            {place: z for place, z in self.bristle.items() if place in left},
+            self.moved,
+        )
+
+    def joined(self, cause: Candidate, values: Mapping[str, float]) -> Model:
+        """
+        Return the model with one more cause.
+
+        :param cause: the cause.
+        :param values: of its parameters.
+        :return: the larger model.
+        """
+        causes = (*self.causes, cause)
+        row = tuple(axis_of(p).place(values[p.name]) for p in cause.parameters)
+        bristle = {place: self.bristle.get(place, 0.0) for place in _dry_places(causes)}
+        return Model(causes, (*self.z, row), bristle, self.moved)
+
+
+def _dry_places(causes: Sequence[Candidate]) -> list[str]:
+    """Return the pulleys whose dry friction needs an angle to build up over."""
+    dry = {c.place for c in causes if find(c.effect).hook == 'budget'}
+    own = {c.place for c in causes if c.effect == 'presliding_friction'}
+    return sorted(dry - own)
+
+
+def bristles(model: Model) -> list[EffectUse]:
+    """
+    Return the effects that let dry friction build up over an angle.
+
+    :param model: the model.
+    :return: one effect for each pulley with dry friction.
+    """
+    return [
+        EffectUse('presliding_friction', place, {'torque': 0.0, 'angle': BRISTLE.value(z)})
+        for place, z in model.bristle.items()
+    ]
