@@ -16,8 +16,9 @@ class Parameter:
     possible. ``typical`` is also the size at which the effect is worth looking for. ``search``
     says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
     recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
-    ``level`` (of the motor's torque), ``share`` (all or nothing); or ``shape``: a shape in spite
-    of its neutral value.
+    ``level`` (of the motor's torque), ``share`` (all or nothing); what it is to the size beside
+    it: its ``phase``, the angle at which it comes to ``rest``; or ``shape``: a shape in spite of
+    its neutral value.
     """
 
     name: str
@@ -27,7 +28,9 @@ class Parameter:
     low: float
     high: float
     typical: float
-    search: Literal['', 'instant', 'duration', 'cycles', 'level', 'share', 'shape'] = ''
+    search: Literal[
+        '', 'instant', 'duration', 'cycles', 'level', 'share', 'phase', 'rest', 'shape'
+    ] = ''
 
     @property
     def shapes_only(self) -> bool:

@@ -37,7 +37,7 @@ class ClosedLoop:
 def closed_loop_gap(
     recordings: Sequence[Recording],
     before: Instrument,
-    after: Instrument,
+    after: Sequence[Instrument],
     segments: Sequence[Segment],
 ) -> ClosedLoop:
     """
@@ -45,19 +45,19 @@ def closed_loop_gap(
 
     :param recordings: those with set-points for all motors count.
     :param before: the instrument file.
-    :param after: the patched one.
+    :param after: the patched one, for each recording with what happened in it.
     :param segments: which contacts were there, and the noise.
     :return: gaps by channel, most first, and the traces.
     """
     traces: list[Trace] = []
     floors: dict[str, list[FloatArray]] = {}
-    for recording, segment in zip(recordings, segments, strict=True):
+    for recording, segment, patched in zip(recordings, segments, after, strict=True):
         names = [channel_name('setpoint', f'pulley_{p}', 'position') for p in before.driven]
         if segment.pushed or any(name not in recording for name in names):
             continue  # what pushed back is no part of the model, nor is who commanded nothing
         try:
             first = _run(recording, segment, before, names)
-            second = _run(recording, segment, after, names)
+            second = _run(recording, segment, patched, names)
         except TendonError:
             continue  # a model that diverges in closed loop has no gap to show
         for sensor in before.sensors:

@@ -21,6 +21,8 @@ TIE, TIE_FORM = 0.015, 0.3
 TIE_LAW = 0.06
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
+#: part of a recording from which on what lasts is no event
+LASTS = 0.3
 
 
 def form_power(problem: Problem, start: Fit, state: Fit) -> float:
@@ -68,7 +70,7 @@ def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float
         those of any dry friction.
     """
     for p in candidate.parameters:
-        if p.search == 'duration' and values[p.name] > 0.5 * longest:
+        if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
         if p.search == 'cycles' and values[p.name] < 1.0:
             return True

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -21,6 +22,7 @@ FloatArray = NDArray[np.float64]
 CLUSTER = 1.0  # [s] of samples that count as one piece of evidence
 #: relative error of a size that the form of a law leaves, one deviation
 SIZE_FORM = 0.02
+SMALL = 1e-5  # step of a derivative, on an axis
 
 
 def deviations(problem: Problem, fit: Fit) -> FloatArray:
@@ -31,17 +33,39 @@ def deviations(problem: Problem, fit: Fit) -> FloatArray:
     :param fit: the fit.
     :return: shape (unknowns,), in the order of the fit.
     """
-    axes = problem.axes(fit.model)
-    prior = np.array([axis.spread**-2 for axis in axes])
-    inverse = problem.covariance(fit)
-    meat = np.diag(prior)
-    cluster = problem.clusters(CLUSTER)
-    scores = fit.slope * fit.left[:, None]
-    sums = np.zeros((int(cluster.max()) + 1 if len(cluster) else 1, len(axes)))
-    np.add.at(sums, cluster, scores)
-    meat = meat + sums.T @ sums
-    variance = np.diag(inverse @ meat @ inverse)
-    return np.sqrt(np.maximum(variance, np.diag(inverse)))
+    return Spread(problem, fit).along(np.eye(fit.slope.shape[1]))
+
+
+class Spread:
+    """
+    How well a fit knows its unknowns.
+
+    :param problem: the data.
+    :param fit: the fit.
+    """
+
+    def __init__(self, problem: Problem, fit: Fit) -> None:
+        axes = problem.axes(fit.model)
+        self._white = problem.covariance(fit)
+        cluster = problem.clusters(CLUSTER)
+        scores = fit.slope * fit.left[:, None]
+        sums = np.zeros((int(cluster.max()) + 1 if len(cluster) else 1, len(axes)))
+        np.add.at(sums, cluster, scores)
+        meat = np.diag([axis.spread**-2 for axis in axes]) + sums.T @ sums
+        self._clustered = self._white @ meat @ self._white
+
+    def along(self, directions: FloatArray) -> FloatArray:
+        """
+        Return the standard deviations of sums of unknowns.
+
+        :param directions: what each unknown counts for, shape (sums, unknowns).
+        :return: the larger of what white and what clustered noise leaves, shape (sums,).
+        """
+        found = [
+            np.einsum('ij,jk,ik->i', directions, matrix, directions)
+            for matrix in (self._white, self._clustered)
+        ]
+        return np.asarray(np.sqrt(np.maximum(*found).clip(min=0.0)), dtype=np.float64)
 
 
 def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[float, float]]]:
@@ -52,24 +76,41 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     :param fit: the fit.
     :return: for each cause, low and high by parameter, in its unit.
     """
-    spread = deviations(problem, fit)
-    axes = problem.axes(fit.model)
+    spread = Spread(problem, fit)
     reach = float(student.ppf(0.975, 20))
     found = []
     at = 0
-    for k, cause in enumerate(fit.model.causes):
-        values = fit.model.values(k)
+    for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
+        coordinates = Coordinates(cause.parameters)
+        centre = coordinates.values(z)
         row: dict[str, tuple[float, float]] = {}
-        for p, z in zip(cause.parameters, fit.model.z[k], strict=True):
-            axis = axes[at]
-            wide = spread[at]
-            if not p.is_shape and not axis.log:
-                wide = float(np.hypot(wide, SIZE_FORM * abs(z)))
-            ends = axis.value(z - reach * wide), axis.value(z + reach * wide)
-            row[p.name] = (min(*ends, values[p.name]), max(*ends, values[p.name]))
-            at += 1
+        for n, p in enumerate(cause.parameters):
+            value, axis = centre[p.name], coordinates.axes[n]
+            direction = np.zeros((1, fit.slope.shape[1]))
+            if coordinates.paired(n):
+                for j, step in enumerate(_steps(len(z))):
+                    moved = coordinates.values([a + b for a, b in zip(z, step, strict=True)])
+                    direction[0, at + j] = (moved[p.name] - value) / SMALL
+                wide = float(spread.along(direction)[0])
+                if not p.is_shape:
+                    wide = float(np.hypot(wide, SIZE_FORM * abs(value)))
+                ends = value - reach * wide, value + reach * wide
+                row[p.name] = max(p.low, ends[0]), min(p.high, ends[1])
+                continue
+            direction[0, at + n] = 1.0
+            wide = float(spread.along(direction)[0])
+            if coordinates.linear(n):
+                wide = float(np.hypot(wide, SIZE_FORM * abs(z[n])))
+            ends = axis.value(z[n] - reach * wide), axis.value(z[n] + reach * wide)
+            row[p.name] = (min(*ends, value), max(*ends, value))
+        at += len(z)
         found.append(row)
     return found
+
+
+def _steps(count: int) -> FloatArray:
+    """Return a small step along each axis."""
+    return SMALL * np.eye(count)
 
 
 def mean_square_interval(squares: Sequence[float]) -> tuple[float, float]:

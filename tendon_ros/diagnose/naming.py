@@ -65,6 +65,7 @@ def causes_of(
                 },
                 indistinguishable=tuple(Named(effect=e, place=p) for e, p in names),
                 shrink=shrink_of(heard.held, found.start.model, without, final.model),
+                recording=cause.only,
             )
         )
     return causes

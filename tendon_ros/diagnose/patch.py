@@ -9,13 +9,16 @@ from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
 
 
-def patched(problem: Problem, model: Model, instrument: Instrument) -> Instrument:
+def patched(
+    problem: Problem, model: Model, instrument: Instrument, recording: str = ''
+) -> Instrument:
     """
     Return the instrument with the causes of a model, everything else as fitted.
 
     :param problem: the data.
     :param model: the fitted model.
     :param instrument: the file as it was.
+    :param recording: whose events are wanted too; without it only what acts in all recordings is.
     :return: effects beside those of the file; inertias, dampings, preloads and stiffnesses moved
         within their tolerances; a loop whose stiffness moved has a curve of its own.
     """
@@ -62,7 +65,11 @@ def patched(problem: Problem, model: Model, instrument: Instrument) -> Instrumen
         for t, z in problem.moved(model)
         if t.quantity == 'torque_gain'
     ]
-    accepted = [model.causes[k].use(model.values(k)) for k in range(len(model.causes))]
+    accepted = [
+        cause.use(model.values(k))
+        for k, cause in enumerate(model.causes)
+        if cause.acts_in(recording)
+    ]
     used = {loop.curve for loop in loops}
     return replace(
         instrument,

@@ -70,7 +70,7 @@ class Shrink(_Frozen):
 
 
 class Cause(_Frozen):
-    """An accepted effect."""
+    """An accepted effect; ``recording``: the one in which it happened, empty where in all."""
 
     effect: str
     place: str
@@ -78,6 +78,7 @@ class Cause(_Frozen):
     parameters: Mapping[str, FittedParameter]
     indistinguishable: tuple[Candidate, ...] = ()
     shrink: Shrink
+    recording: str = ''
 
 
 class Judged(_Frozen):

@@ -120,10 +120,17 @@ class Search:
         :return: the proposals.
         """
         screen = Screen(self.problem, state)
-        out = {(c.effect, c.place) for c in (*state.model.causes, *leave)}
+        # what happens at a time may happen again, in another recording
+        lasting = [c for c in state.model.causes if not c.instants]
+        out = {(c.effect, c.place) for c in (*lasting, *leave)}
         everyone = self.candidates if among is None else among
         asked = [c for c in everyone if (c.effect, c.place) not in out]
-        first = [p for ps in self._pool.map(screen.proposals, asked) for p in ps[:2]]
+        first = [
+            p
+            for proposals in self._pool.map(screen.proposals, asked)
+            for p in proposals[:2]
+            if p.candidate not in state.model.causes
+        ]
         first.sort(key=lambda p: -p.gain)
         second = list(self._pool.map(screen.corrected, first[:CORRECTED])) + first[CORRECTED:]
         best: dict[Candidate, Proposal] = {}
@@ -150,7 +157,9 @@ class Search:
                 (proposal.candidate.effect, proposal.candidate.place), proposal.values
             )
             model = state.model.joined(proposal.candidate, values)
-            fit = self.problem.fitted(model, known, rounds=6, accuracy=1e-2)
+            # sizes and shapes lie along curved valleys: more of them, more steps
+            rounds = 6 * len(proposal.candidate.parameters)
+            fit = self.problem.fitted(model, known, rounds=rounds, accuracy=1e-2)
             return Rival(proposal.candidate, fit)
 
         found = [

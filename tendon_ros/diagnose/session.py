@@ -106,7 +106,8 @@ def diagnose(
     repaired = patched(heard.problem, final.model, instrument)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
-    loops = closed_loop_gap(intake.recordings, instrument, repaired, segments)
+    each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
+    loops = closed_loop_gap(intake.recordings, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
     report('looking for what would separate the rest', 0.95)
     ahead = (

@@ -49,6 +49,7 @@ EFFECT = Effect(
             low=-math.pi / 2,
             high=math.pi / 2,
             typical=math.pi / 4,
+            search='phase',
         ),
     ),
     hook='torque',

@@ -47,6 +47,7 @@ EFFECT = Effect(
             low=-2 * math.pi,
             high=2 * math.pi,
             typical=0.0,
+            search='rest',
         ),
     ),
     hook='torque',

@@ -62,6 +62,7 @@ EFFECT = Effect(
             low=-math.pi / 2,
             high=math.pi / 2,
             typical=0.0,
+            search='phase',
         ),
     ),
     hook='torque',

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.effects import find
-from tendon_ros.identify.axis import axis_of
 from tendon_ros.identify.candidate import Candidate, Values
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
@@ -125,12 +125,13 @@ class Trial:
         kept = np.array([(t.effect, t.place) != at for t in self._tolerances], dtype=np.bool_)
         allowed = [t for t, keep in zip(self._tolerances, kept, strict=True) if keep]
         by_tolerance = self._by_tolerance[kept]
-        axes = [axis_of(p) for p in candidate.parameters]
+        coordinates = Coordinates(candidate.parameters)
+        axes = coordinates.axes
         ends = np.array([a.ends for a in (*axes, *(t.axis for t in allowed))]).reshape(-1, 2)
         free = len(axes)
         start = _again(*rival).parameters
         x = np.zeros(len(ends))
-        x[:free] = [axis.place(start[axis.name]) for axis in axes]
+        x[:free] = coordinates.place(start)
         measured = [n for n, s in enumerate(self._sensed) if s.status == 'measured']
         found = []
         for _ in range(ROUNDS if measured else 1):
@@ -158,10 +159,7 @@ class Trial:
     ) -> FloatArray:
         """Return what the channels say at a place of a rival's parameters and tolerances."""
         free = len(candidate.parameters)
-        values = {
-            p.name: axis_of(p).value(float(z))
-            for p, z in zip(candidate.parameters, x[:free], strict=True)
-        }
+        values = Coordinates(candidate.parameters).values(x[:free].tolist())
         moved = [_moved(t, float(z)) for t, z in zip(allowed, x[free:], strict=True) if z != 0.0]
         return self._predicted([EffectUse(candidate.effect, candidate.place, values), *moved])
 

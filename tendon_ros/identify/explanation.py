@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.effects import find
-from tendon_ros.identify.axis import Axis, axis_of
+from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
@@ -47,10 +48,7 @@ class Model:
         :param k: which.
         :return: values by name, SI units.
         """
-        cause = self.causes[k]
-        return {
-            p.name: axis_of(p).value(z) for p, z in zip(cause.parameters, self.z[k], strict=True)
-        }
+        return Coordinates(self.causes[k].parameters).values(self.z[k])
 
     def without(self, k: int) -> Model:
         """
@@ -77,7 +75,7 @@ class Model:
         :return: the larger model.
         """
         causes = (*self.causes, cause)
-        row = tuple(axis_of(p).place(values[p.name]) for p in cause.parameters)
+        row = Coordinates(cause.parameters).place(values)
         bristle = {place: self.bristle.get(place, 0.0) for place in _dry_places(causes)}
         return Model(causes, (*self.z, row), bristle, self.moved)
 

@@ -15,7 +15,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.axis import Axis, axis_of
+from tendon_ros.identify.axis import Axis
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.explanation import BRISTLE, Model
 from tendon_ros.identify.residuals import Residuals
 
@@ -61,7 +62,7 @@ class Problem(Residuals):
 
     def axes(self, model: Model) -> list[Axis]:
         """Return the axes of all unknowns, in their order."""
-        own = [axis_of(p) for c in model.causes for p in c.parameters]
+        own = [axis for c in model.causes for axis in Coordinates(c.parameters).axes]
         return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
 
     def labels(self, model: Model) -> list[str]:

@@ -18,6 +18,8 @@ from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
+EVENTS = 2  # proposals of one event: in all recordings, or in one of them
+
 
 @dataclass(frozen=True)
 class Proposal:
@@ -56,18 +58,18 @@ class Screen:
         :return: the proposals, best first; empty where it changes nothing that was measured.
         """
         found = []
-        for values in self._starts(candidate):
-            first = self._signature(candidate, values)
+        for one, values in self._starts(candidate):
+            first = self._signature(one, values)
             if first is None:
                 continue
             size, gain, seen, own = first
             if not candidate.scales:
-                found.append(Proposal(candidate, values, gain if size > 0.0 else 0.0, seen, own))
+                found.append(Proposal(one, values, gain if size > 0.0 else 0.0, seen, own))
             elif size <= 0.0 and candidate.one_sided:
-                found.append(Proposal(candidate, values, 0.0, seen, own))
+                found.append(Proposal(one, values, 0.0, seen, own))
             else:
                 scaled = _scaled(candidate, values, float(np.clip(size, -30.0, 30.0)))
-                found.append(Proposal(candidate, scaled, gain, seen, own))
+                found.append(Proposal(one, scaled, gain, seen, own))
         return sorted(found, key=lambda p: -p.gain)
 
     def corrected(self, proposal: Proposal) -> Proposal:
@@ -110,51 +112,42 @@ class Screen:
 
     # -- starts that a coarse grid would miss
 
-    def _starts(self, candidate: Candidate) -> list[dict[str, float]]:
+    def _starts(self, candidate: Candidate) -> list[tuple[Candidate, dict[str, float]]]:
         kinds = {p.search for p in candidate.parameters}
         grid = starts(candidate)
         if 'instant' in kinds:
             return self._instants(candidate, grid[0])
         if 'cycles' in kinds:
-            return self._cycles(candidate, grid[0])
+            grid = self._cycles(candidate, grid[0])
         if 'level' in kinds:
-            return self._levels(candidate, grid[0])
-        return grid
+            grid = self._levels(candidate, grid[0])
+        return [(candidate, values) for values in grid]
 
-    def _instants(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
-        """Find when an event began (and ended) from the signature of one that always lasts."""
+    def _instants(
+        self, candidate: Candidate, values: dict[str, float]
+    ) -> list[tuple[Candidate, dict[str, float]]]:
+        """
+        Find when an event began (and ended) from the signature of one that always lasts.
+
+        In all recordings at one time, or in one of them alone.
+        """
         [instant] = [p for p in candidate.parameters if p.search == 'instant']
         lasting = [p for p in candidate.parameters if p.search == 'duration']
-        [size] = [p for p in candidate.parameters if not p.is_shape]
         always = dict(values) | {instant.name: 0.0} | {p.name: 1e5 for p in lasting}
         model = self.fit.model.joined(candidate, always)
         change = self.problem.left(model) - self.fit.left
         if not np.isfinite(change).all() or not change.any():
             return []
-        sums = self._running_sums(change, candidate)
-        if sums is None:
-            return []
-        time, pull, square = sums
-        found = []
-        ends = len(time) - 1
-        starts_at = np.arange(0, ends, max(1, ends // 400))
-        best: list[tuple[float, int, int]] = []
-        for a in starts_at.tolist():
-            stop = np.array([ends]) if not lasting else np.arange(a + 1, ends + 1, 2)
-            p, s = pull[stop] - pull[a], square[stop] - square[a]
-            gain = np.where(s > 0.05 * square[-1] / max(ends, 1), p * p / np.maximum(s, 1e-12), 0)
-            k = int(np.argmax(gain))
-            best.append((float(gain[k]), int(a), int(stop[k])))
-        best.sort(reverse=True)
-        for _, a, b in best[:1]:
-            size_found = -float(pull[b] - pull[a]) / max(square[b] - square[a], 1e-12)
-            one = dict(values) | {instant.name: float(time[a])}
-            one |= {p.name: max(float(time[b] - time[a]), p.low) for p in lasting}
-            grown = size.neutral + size_found * (size.typical - size.neutral)
-            one[size.name] = float(np.clip(grown, size.low, size.high))
-            if one[size.name] != size.neutral:
-                found.append(one)
-        return found
+        names = [s.name for s in self.problem.rollouts.segments]
+        found: list[tuple[float, Candidate, dict[str, float]]] = []
+        for only in ['', *(names if len(names) > 1 else [])]:
+            one = replace(candidate, only=only)
+            sums = self._running_sums(change, one)
+            if sums is not None:
+                gain, begun = _best_begin(one, values, *sums)
+                found.append((gain, one, begun))
+        found.sort(key=lambda entry: -entry[0])
+        return [(one, begun) for _, one, begun in found[:EVENTS] if begun]
 
     def _running_sums(
         self, change: FloatArray, candidate: Candidate
@@ -220,7 +213,42 @@ class Screen:
             default=0.0,
         )
         [name] = [p.name for p in candidate.parameters if p.search == 'level']
-        return [values | {name: part * largest} for part in (0.9, 0.7, 0.5) if largest > 0.0]
+        return [
+            values | {name: part * largest} for part in (0.98, 0.85, 0.7, 0.5) if largest > 0.0
+        ]
+
+
+def _best_begin(
+    candidate: Candidate,
+    values: dict[str, float],
+    time: FloatArray,
+    pull: FloatArray,
+    square: FloatArray,
+) -> tuple[float, dict[str, float]]:
+    """
+    Return by how much an event lowers the squares, with its values; none where it does nothing.
+
+    ``time``, ``pull``, ``square``: running sums, shape (bins + 1,), of an event that lasts.
+    """
+    [instant] = [p for p in candidate.parameters if p.search == 'instant']
+    lasting = [p for p in candidate.parameters if p.search == 'duration']
+    [size] = [p for p in candidate.parameters if not p.is_shape]
+    ends = len(time) - 1
+    best = (0.0, 0, ends)
+    for a in range(0, ends, max(1, ends // 400)):
+        stop = np.arange(a + 1, ends + 1, 2) if lasting else np.array([ends])
+        p, s = pull[stop] - pull[a], square[stop] - square[a]
+        gains = np.where(s > 0.05 * square[-1] / max(ends, 1), p * p / np.maximum(s, 1e-12), 0.0)
+        k = int(np.argmax(gains))
+        best = max(best, (float(gains[k]), a, int(stop[k])))
+    gain, a, b = best
+    grown = -float(pull[b] - pull[a]) / max(float(square[b] - square[a]), 1e-12)
+    found = dict(values) | {instant.name: float(time[a])}
+    found |= {p.name: max(float(time[b] - time[a]), p.low) for p in lasting}
+    found[size.name] = float(
+        np.clip(size.neutral + grown * (size.typical - size.neutral), size.low, size.high)
+    )
+    return gain, found if found[size.name] != size.neutral else {}
 
 
 def _scaled(candidate: Candidate, values: dict[str, float], size: float) -> dict[str, float]:
