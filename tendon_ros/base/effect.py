@@ -76,7 +76,7 @@ class Effect:
     hook: str = ''
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
-    form: float = 0.025
+    form: float = 0.01
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

@@ -9,20 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import BRISTLE
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.starting import BEGUN, LASTS
 
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
-TIE, TIE_FORM = 0.015, 0.3
-#: and the most that the form of their laws excuses: creep may leave much, and yet be no friction
-TIE_LAW = 0.06
+TIE, TIE_FORM = 0.015, 0.5
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
-#: part of a recording from which on what lasts is no event
-LASTS = 0.3
 
 
 def form_power(problem: Problem, start: Fit, state: Fit) -> float:
@@ -36,40 +35,49 @@ def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     """
     if not state.model.causes:
         return 0.0
+    explained = max(0.0, start.cost - state.cost) / len(state.left)
     driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
     forms = [
         COUNTED if find(c.effect).hook == 'budget' and c.place in driven else find(c.effect).form
         for c in state.model.causes
     ]
-    explained = max(0.0, start.cost - state.cost) / len(state.left)
-    return max(forms) ** 2 * explained
+    # what each is worth beside the others; what they share is shared out
+    worths = np.minimum(np.array(problem.worths(state)) / len(state.left), explained)
+    worths *= max(1.0, explained / max(float(worths.sum()), 1e-12))
+    return float(np.minimum(worths, explained) @ np.square(forms))
 
 
-def tie(problem: Problem, start: Fit, final: Fit) -> float:
+def tie(problem: Problem, best: Fit) -> float:
     """
     Return the misfit beyond the best within which two explanations are equal.
 
+    What the best leaves shows how far laws and machine are apart here: so much may be luck.
+
     :param problem: the data.
-    :param start: without any cause.
-    :param final: the best.
+    :param best: the best.
     :return: in noise power per sample.
     """
-    explained = max(0.0, start.cost - final.cost) / len(final.left)
-    form = min(form_power(problem, start, final), TIE_LAW**2 * explained)
-    return TIE + form + TIE_FORM * problem.structured(final.left)
+    return TIE + TIE_FORM * problem.structured(best.left)
 
 
-def degenerate(candidate: Candidate, values: Mapping[str, float], longest: float) -> bool:
+def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
     Return whether a fit has bent an effect into another that has a name of its own.
 
+    :param problem: the data.
     :param candidate: the effect.
     :param values: of its parameters.
-    :param longest: duration of the longest recording [s].
     :return: whether: an event that always lasts, a ripple without a period, bristles as short as
-        those of any dry friction.
+        those of any dry friction, a number of the file within its tolerance.
     """
+    longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
+    for t in problem.tolerances:
+        if (t.effect, t.place) == (candidate.effect, candidate.place):
+            [value] = values.values()
+            return t.axis.low < value < t.axis.high
     for p in candidate.parameters:
+        if p.search == 'instant' and not BEGUN < values[p.name] / longest < 1.0 - BEGUN:
+            return True
         if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
         if p.search == 'cycles' and values[p.name] < 1.0:

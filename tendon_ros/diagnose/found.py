@@ -22,18 +22,17 @@ class Found:
     """
     Everything a search leaves behind.
 
-    ``states``: the start, then one for each cause that joined. ``rivals``, ``without``: for each
-    cause of the last state, who was fitted in its place, and the fit without it. ``proposals``:
-    of the first screening. ``next_best``: who was fitted last and not taken. ``first``: who was
-    fitted beside the first cause.
+    ``states``: the start, then one for each cause that joins, most telling first. ``rivals``,
+    ``without``: for each cause of the last state, who was fitted in its place, and the fit
+    without it. ``proposals``: of the first screening, the best of each candidate. ``telling``:
+    effects and places that explained much at some time.
     """
 
     states: list[Fit] = field(default_factory=list)
     rivals: list[list[Rival]] = field(default_factory=list)
     without: list[Fit] = field(default_factory=list)
     proposals: list[Proposal] = field(default_factory=list)
-    next_best: list[Rival] = field(default_factory=list)
-    first: list[Rival] = field(default_factory=list)
+    telling: set[tuple[str, str]] = field(default_factory=set)
 
     @property
     def start(self) -> Fit:

@@ -51,7 +51,12 @@ class Spread:
         scores = fit.slope * fit.left[:, None]
         sums = np.zeros((int(cluster.max()) + 1 if len(cluster) else 1, len(axes)))
         np.add.at(sums, cluster, scores)
-        meat = np.diag([axis.spread**-2 for axis in axes]) + sums.T @ sums
+        # a prior of so much weight is still off by one deviation
+        prior = problem.prior(fit.model)
+        held = prior > 0.0
+        off = np.zeros(len(axes))
+        off[held] = prior[held] * np.array([axis.spread for axis in axes])[held]
+        meat = np.diag(off**2) + sums.T @ sums
         self._clustered = self._white @ meat @ self._white
 
     def along(self, directions: FloatArray) -> FloatArray:
@@ -99,7 +104,7 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
                 continue
             direction[0, at + n] = 1.0
             wide = float(spread.along(direction)[0])
-            if coordinates.linear(n):
+            if n in coordinates.sizes and not axis.log:
                 wide = float(np.hypot(wide, SIZE_FORM * abs(z[n])))
             ends = axis.value(z[n] - reach * wide), axis.value(z[n] + reach * wide)
             row[p.name] = (min(*ends, value), max(*ends, value))

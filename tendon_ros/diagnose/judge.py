@@ -71,8 +71,8 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     """
     Return the rivals that these data cannot tell from a cause.
 
-    A rival that needs more parameters to do as well is a special case of itself that looks like
-    the cause; it is not counted.
+    A rival at the same place that needs more parameters to do as well is a special case of itself
+    that looks like the cause; it is not counted.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
@@ -82,12 +82,15 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     final = found.final
     cause = final.model.causes[k]
     samples = len(final.left)
-    allowed = tie(problem, found.start, final)
+    allowed = tie(problem, final)
     return [
         r
         for r in found.rivals[k]
         if (r.fit.cost - final.cost) / samples <= allowed
-        and len(r.candidate.parameters) <= len(cause.parameters)
+        and (
+            r.candidate.place != cause.place
+            or len(r.candidate.parameters) <= len(cause.parameters)
+        )
     ]
 
 

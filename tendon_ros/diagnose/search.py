@@ -1,9 +1,9 @@
 """
 The search for causes: which effects, together, explain what is left.
 
-Forward steps add the candidate that explains most when everything is refitted; after each step
-every cause must still be worth having, and at the end each one is challenged by all others in its
-place. The order in which causes were found therefore decides nothing.
+Each round adds the set of candidates that together explain most, to first order; everything is
+then fitted, and every cause must still be worth having. At the end each one is challenged by all
+others in its place. The order in which causes were found therefore decides nothing.
 """
 
 from __future__ import annotations
@@ -18,19 +18,30 @@ from tendon_ros.diagnose.form import degenerate, form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen
+from tendon_ros.identify.subset import Member, Subsets
 
 FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 CORRECTED = 36  # proposals that are judged again at their own size
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
-SHORTLIST = 10  # candidates that are fitted at each step
+SHORTLIST = 10  # rivals of a cause that are fitted
 MOST = 5  # causes
+ROUNDS = 3  # of looking for more causes
+#: part of what is left that a cause must explain which is smaller than the form of other laws; an
+#: event, which chooses its time, more of it
+TAKES, TAKES_EVENT = 0.6, 0.85
+#: times what is needed that a cause is worth, to first order, if it need not be left out to see
+CLEAR = 10.0
+#: part of what a fit would explain that first order is sure to see
+FIRST_ORDER_SEES = 0.4
+TELLING = 20  # candidates of each round that may replace one of many causes
 MANY = 3  # causes from which on not every candidate challenges each of them
-ROUNDS = 3  # of challenges
+REPLACED = 6  # causes at most that challenges replace
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 #: part of the noise's power that a cause must explain, over all samples and over one channel
@@ -40,6 +51,19 @@ LEAST, LEAST_IN_ONE = 0.03, 0.12
 def _judged(rival: Rival) -> float:
     """Return the cost of a fit, more where more parameters made it."""
     return rival.fit.cost * (1.0 + PARAMETER * len(rival.candidate.parameters))
+
+
+def best_of(proposals: Sequence[Proposal]) -> list[Proposal]:
+    """
+    Return the best proposal of each candidate.
+
+    :param proposals: best first.
+    :return: best first.
+    """
+    best: dict[Candidate, Proposal] = {}
+    for proposal in proposals:
+        best.setdefault(proposal.candidate, proposal)
+    return list(best.values())
 
 
 class Search:
@@ -66,7 +90,6 @@ class Search:
         self.report = report
         self._memory = memory
         self._pool = ThreadPoolExecutor(jobs)
-        self._longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
 
     def run(self) -> Found:
         """
@@ -81,45 +104,74 @@ class Search:
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._settled(model)
             found.states.append(state)
-        while len(state.model.causes) < MOST and self.open_question(state):
-            step = len(state.model.causes)
-            self.report(f'looking for cause {step + 1}', 0.05 + 0.1 * step)
-            proposals = self.screened(state)
-            if not found.proposals:
-                found.proposals = proposals
-            rivals = self.fitted(state, proposals)
-            found.next_best = rivals
-            if not rivals or not self.worthwhile(found.start, state, rivals[0].fit):
+        for turn in range(ROUNDS):
+            if found.proposals and not self.open_question(state):
                 break
-            if not found.first:
-                found.first = rivals[1:]
-            state = self._settled(rivals[0].fit.model, self.problem.slopes(state))
-            state = self._pruned(found.start, state)
-            if len(state.model.causes) <= step:
+            self.report('looking for causes', 0.05 + 0.15 * turn)
+            grown = self._grown(found, state)
+            if grown is None:
                 break
+            state = grown
             found.states.append(state)
             if self._memory:
                 self._memory.keep([s.model for s in found.states])
         self._challenge(found)
+        self._ordered(found)
         return found
+
+    def _grown(self, found: Found, state: Fit) -> Fit | None:
+        """Return a state with the causes that explain most together; None where none does."""
+        screen = Screen(self.problem, state)
+        proposals = self.screened(state, screen)
+        if not found.proposals:
+            found.proposals = best_of(proposals)
+        leading = best_of(proposals)[:TELLING]
+        found.telling |= {(p.candidate.effect, p.candidate.place) for p in leading}
+        room = MOST - len(state.model.causes)
+        if room <= 0 or not self.open_question(state):
+            return None
+        members = self._subset(screen, proposals, room)
+        if not members:
+            return None
+        model = state.model
+        for member in members:
+            candidate = member.proposal.candidate
+            model = model.joined(candidate, Coordinates(candidate.parameters).values(member.z))
+        # sizes and shapes lie along curved valleys: more of them, more steps
+        fit = self.problem.fitted(model, self.problem.slopes(state), rounds=12, accuracy=1e-2)
+        fit = self._pruned(found.start, self._settled(fit.model, self.problem.slopes(state)))
+        new = set(fit.model.causes) - set(state.model.causes)
+        return fit if new and self.worthwhile(found.start, state, fit) else None
+
+    def _subset(self, screen: Screen, proposals: Sequence[Proposal], most: int) -> list[Member]:
+        """Return the proposals that together explain most, to first order."""
+        telling = [p for p in proposals[:CORRECTED] if p.gain > 0.0]
+        signatures = list(self._pool.map(screen.signatures, telling))
+        kept = [(p, s) for p, s in zip(telling, signatures, strict=True) if s is not None]
+        if not kept:
+            return []
+        sets = Subsets([p for p, _ in kept], [s for _, s in kept], screen.left)
+        return sets.best(LEAST * len(screen.left), most)
 
     # -- steps
 
     def screened(
         self,
         state: Fit,
+        screen: Screen | None = None,
         leave: Sequence[Candidate] = (),
         among: Sequence[Candidate] | None = None,
     ) -> list[Proposal]:
         """
-        Return the best proposal of each candidate, best first.
+        Return the proposals of all candidates, two of each at most, best first.
 
         :param state: what holds already.
+        :param screen: of that state.
         :param leave: candidates to leave out.
         :param among: those to ask; all where None.
-        :return: the proposals.
+        :return: the proposals; those that explain most are judged again at their own size.
         """
-        screen = Screen(self.problem, state)
+        screen = screen or Screen(self.problem, state)
         # what happens at a time may happen again, in another recording
         lasting = [c for c in state.model.causes if not c.instants]
         out = {(c.effect, c.place) for c in (*lasting, *leave)}
@@ -132,31 +184,24 @@ class Search:
             if p.candidate not in state.model.causes
         ]
         first.sort(key=lambda p: -p.gain)
-        second = list(self._pool.map(screen.corrected, first[:CORRECTED])) + first[CORRECTED:]
-        best: dict[Candidate, Proposal] = {}
-        for p in sorted(second, key=lambda p: -p.gain):
-            best.setdefault(p.candidate, p)
-        return list(best.values())
+        again = list(self._pool.map(screen.corrected, first[:CORRECTED]))
+        return sorted([*again, *first[CORRECTED:]], key=lambda p: -p.gain)
 
-    def fitted(self, state: Fit, proposals: Sequence[Proposal]) -> list[Rival]:
+    def fitted(self, state: Fit, proposals: Sequence[Proposal], needed: float) -> list[Rival]:
         """
-        Fit the most promising proposals beside what holds already.
+        Fit the proposals that may explain as much as is needed, each beside what holds already.
 
         :param state: what holds already.
-        :param proposals: best first.
+        :param proposals: best first, one of each candidate.
+        :param needed: by how much squares must fall.
         :return: the fits, best first.
         """
-        chosen = list(proposals[:SHORTLIST])
-        pressed = self._pressed(state)
-        chosen += [p for p in proposals[SHORTLIST:] if (p.candidate.effect, p.candidate.place)
-                   in pressed]  # fmt: skip
+        near = [p for p in proposals if p.gain > FIRST_ORDER_SEES * needed]
+        chosen = near[:SHORTLIST] or list(proposals[:1])
         known = self.problem.slopes(state)
 
         def one(proposal: Proposal) -> Rival:
-            values = pressed.get(
-                (proposal.candidate.effect, proposal.candidate.place), proposal.values
-            )
-            model = state.model.joined(proposal.candidate, values)
+            model = state.model.joined(proposal.candidate, proposal.values)
             # sizes and shapes lie along curved valleys: more of them, more steps
             rounds = 6 * len(proposal.candidate.parameters)
             fit = self.problem.fitted(model, known, rounds=rounds, accuracy=1e-2)
@@ -166,19 +211,9 @@ class Search:
             r
             for r in self._pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
-            and not degenerate(r.candidate, r.fit.model.values(-1), self._longest)
+            and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
         ]
         return sorted(found, key=_judged)
-
-    def _pressed(self, state: Fit) -> dict[tuple[str, str], dict[str, float]]:
-        """Return the tolerances that are at their ends: there, the number itself may be off."""
-        found = {}
-        for t, z in zip(self.problem.tolerances, state.model.moved, strict=True):
-            low, high = t.axis.ends
-            if z <= low + 0.02 or z >= high - 0.02:
-                name = Candidate(t.effect, t.place).parameters[0].name
-                found[t.effect, t.place] = {name: t.axis.value(z)}
-        return found
 
     def worthwhile(self, start: Fit, before: Fit, after: Fit) -> bool:
         """
@@ -190,9 +225,14 @@ class Search:
         :return: whether it explains more than noise and the form of the other laws can.
         """
         gain, in_one = self.gains(before, after)
-        return (gain > LEAST or in_one > LEAST_IN_ONE) and gain > form_power(
-            self.problem, start, before
-        )
+        if gain <= LEAST and in_one <= LEAST_IN_ONE:
+            return False
+        if gain > form_power(self.problem, start, before):
+            return True
+        # what the form of a law leaves has no other cause that would explain most of it
+        new = set(after.model.causes) - set(before.model.causes)
+        part = TAKES_EVENT if any(c.instants for c in new) else TAKES
+        return gain > part * self.problem.structured(before.left)
 
     def open_question(self, state: Fit) -> bool:
         """
@@ -232,58 +272,112 @@ class Search:
         return self.problem.fitted(fit.model, rounds=4, accuracy=1e-3)
 
     def _pruned(self, start: Fit, state: Fit) -> Fit:
-        """Drop causes that later ones have made superfluous."""
-        k = 0
-        while k < len(state.model.causes) - 1:
+        """Drop causes that are none, and those that others have made superfluous."""
+        causes = state.model.causes
+        for k in reversed(range(len(causes))):
+            if degenerate(self.problem, causes[k], state.model.values(k)):
+                state = self._settled(state.model.without(k), self.problem.slopes(state))
+        checked: set[Candidate] = set()
+        while True:
+            worths = self.problem.worths(state)
+            needed = self._needed(start, state)
+            doubtful = [
+                k
+                for k, cause in enumerate(state.model.causes)
+                if cause not in checked and worths[k] < CLEAR * needed
+            ]
+            if not doubtful:
+                return state
+            k = min(doubtful, key=lambda k: worths[k])
             known = self.problem.slopes(state)
             smaller = self.problem.fitted(state.model.without(k), known, rounds=6, accuracy=1e-2)
             if self.worthwhile(start, smaller, state):
-                k += 1
+                checked.add(state.model.causes[k])
             else:
                 state = self._settled(smaller.model)
-        return state
+
+    def _needed(self, start: Fit, state: Fit) -> float:
+        """Return the fall of squares that a cause beside all others must be worth."""
+        return len(state.left) * max(LEAST_IN_ONE, form_power(self.problem, start, state))
 
     def _challenge(self, found: Found) -> None:
-        """Let every other candidate take the place of each cause; keep whoever fits better."""
-        for left in reversed(range(ROUNDS)):
-            state = found.final
-            found.rivals, found.without = [], []
-            better: Fit | None = None
-            for k, cause in enumerate(state.model.causes):
-                self.report(f'challenging {cause.effect} at {cause.place}', 0.6 + 0.05 * k)
-                known = self.problem.slopes(state)
-                smaller = state.model.without(k)
-                without = found.start
-                rivals = [r for r in found.first if r.candidate != cause]
-                if len(state.model.causes) > 1 or not rivals:
-                    without = self.problem.fitted(smaller, known, rounds=8, accuracy=1e-3)
-                    among = self._likely(found, cause)
-                    rivals = self.fitted(without, self.screened(without, [cause], among))
-                found.without.append(without)
-                rivals = self._sharpened(found, without, rivals)
-                found.rivals.append(rivals)
-                better = self._better(found, cause, rivals) if left else None
-                if better is not None:
-                    break
-            if better is None:
+        """
+        Let every other candidate take the place of each cause; keep whoever fits better.
+
+        One cause after the other, round and round, until each has stood its ground.
+        """
+        replaced = 0
+        stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
+        while True:
+            causes = found.final.model.causes
+            waiting = [c for c in causes if c not in stood]
+            if not waiting:
                 break
-            found.states[-1] = better
+            cause = waiting[0]
+            self.report(
+                f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
+            )
+            without = self._without(found, causes.index(cause))
+            rivals = self._challengers(found, cause, without)
+            better = self._better(found, cause, rivals) if replaced < REPLACED else None
+            if better is None:
+                stood[cause] = without, rivals
+                continue
+            replaced += 1
+            found.states[-1] = self._pruned(found.start, better)
+            # what stood its ground did so beside the one that has gone
+            stood = {}
+        causes = found.final.model.causes
+        found.without = [stood[c][0] for c in causes]
+        found.rivals = [stood[c][1] for c in causes]
+
+    def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
+        """Return the fits of other candidates in the place of a cause, best first."""
+        proposals = found.proposals
+        if without is not found.start:
+            among = self._likely(found, cause)
+            proposals = best_of(self.screened(without, None, [cause], among))
+        proposals = [p for p in proposals if p.candidate != cause]
+        rivals = self.fitted(without, proposals, without.cost - found.final.cost)
+        return self._sharpened(found, without, rivals)
+
+    def _without(self, found: Found, k: int) -> Fit:
+        """Return the final state without one cause, everything else fitted again."""
+        state = found.final
+        if len(state.model.causes) == 1:
+            return found.start
+        known = self.problem.slopes(state)
+        return self.problem.fitted(state.model.without(k), known, rounds=8, accuracy=1e-3)
+
+    def _ordered(self, found: Found) -> None:
+        """Replace the states by one for each cause, the one that is missed most first."""
+        final = found.final
+        worth = [without.cost for without in found.without]
+        order = sorted(range(len(worth)), key=lambda k: -worth[k])
+        states = [found.start]
+        for count in range(1, len(order)):
+            model = final.model
+            for k in sorted(order[count:], reverse=True):
+                model = model.without(k)
+            known = self.problem.slopes(final)
+            states.append(self.problem.fitted(model, known, rounds=8, accuracy=1e-2))
+        found.states = [*states, final] if order else states
 
     def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
-        """Return who might replace one of many causes: kin, and what explained much at first."""
+        """Return who might replace one of many causes: kin, and what explained much at a time."""
         if len(found.final.model.causes) < MANY:
             return None
-        telling = [p.candidate for p in found.proposals[:CORRECTED]]
         kin = [c for c in self.candidates if c.effect == cause.effect or c.place == cause.place]
+        telling = [c for c in self.candidates if (c.effect, c.place) in found.telling]
         return list(dict.fromkeys([*kin, *telling]))
 
     def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
         """Fit the rivals that come near as carefully as the cause that they challenge."""
         state = found.final
         near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
-        near += tie(self.problem, found.start, state) * len(state.left)
+        near += tie(self.problem, state) * len(state.left)
         close = [r for r in rivals if r.fit.cost < near][:CLOSE]
-        equal = state.cost + tie(self.problem, found.start, state) * len(state.left)
+        equal = state.cost + tie(self.problem, state) * len(state.left)
 
         def careful(rival: Rival) -> Fit:
             # derivatives of another state stall a fit: two places then seem to differ that do not
@@ -299,16 +393,19 @@ class Search:
     def _better(self, found: Found, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
         """Return a fit with another candidate: one that fits better, or as well and is simpler."""
         state = found.final
-        allowed = tie(self.problem, found.start, state)
-        simple = [
-            r
-            for r in rivals
-            if len(r.candidate.parameters) < len(cause.parameters)
-            and (r.fit.cost - state.cost) / len(state.left) <= allowed
-        ]
-        for rival in [*simple[:1], *rivals[:1]]:
-            if rival in simple or rival.fit.cost < 0.99 * state.cost:
+
+        def wins(rival: Candidate, fit: Fit) -> bool:
+            more = len(rival.parameters) - len(cause.parameters)
+            ahead = (state.cost - fit.cost) / len(state.left)
+            if more < 0:
+                return ahead > -tie(self.problem, state)
+            if more > 0:
+                return ahead > tie(self.problem, fit)
+            return fit.cost < 0.99 * state.cost
+
+        for rival in rivals[:2]:
+            if wins(rival.candidate, rival.fit):
                 trial = self._settled(rival.fit.model, self.problem.slopes(state))
-                if rival in simple or trial.cost < 0.99 * state.cost:
+                if wins(rival.candidate, trial):
                     return trial
         return None

@@ -62,4 +62,5 @@ EFFECT = Effect(
     hook='elongation',
     law=cable_slip_law,
     switches=switches,
+    form=0.025,
 )

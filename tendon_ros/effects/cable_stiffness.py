@@ -40,4 +40,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
+    form=0.025,
 )

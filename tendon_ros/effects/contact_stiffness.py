@@ -38,4 +38,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
+    form=0.025,
 )

@@ -58,4 +58,5 @@ EFFECT = Effect(
     ),
     hook='winding',
     law=eccentricity_law,
+    form=0.025,
 )

@@ -41,4 +41,5 @@ EFFECT = Effect(
     ),
     modify=modify,
     dissipative=True,
+    form=0.025,
 )

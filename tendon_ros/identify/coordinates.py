@@ -41,14 +41,14 @@ class Coordinates:
             axes[self._shape] = across
             self.axes = tuple(axes)
 
-    def linear(self, n: int) -> bool:
-        """
-        Return whether what the effect does is linear in a parameter alone.
-
-        :param n: which parameter.
-        :return: whether it is a size on an axis of its own.
-        """
-        return not self._parameters[n].is_shape and not self.axes[n].log
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Which axes are sizes: what the effect does is nearly linear in them."""
+        return tuple(
+            n
+            for n, p in enumerate(self._parameters)
+            if not (p.is_shape or p.search == 'share') or self.paired(n)
+        )
 
     def paired(self, n: int) -> bool:
         """

@@ -22,6 +22,8 @@ from tendon_ros.identify.residuals import Residuals
 
 FloatArray = NDArray[np.float64]
 
+#: time over which what is left remembers itself [s]: so many bins count as one against a prior
+REMEMBERED = 0.4
 RETIMED = (-0.08, -0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.08)  # [s] that events are tried at
 
 
@@ -64,6 +66,34 @@ class Problem(Residuals):
         """Return the axes of all unknowns, in their order."""
         own = [axis for c in model.causes for axis in Coordinates(c.parameters).axes]
         return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
+
+    def prior(self, model: Model) -> FloatArray:
+        """
+        Return what a deviation of each unknown costs before any data.
+
+        What is left of a wrong model is no noise: its bins repeat each other. Counted one by one,
+        they would move any number of the file to the end of its tolerance.
+
+        :param model: whose unknowns.
+        :return: by its square on the axis, shape (unknowns,).
+        """
+        counted = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
+        weight = np.array([axis.spread**-2 for axis in self.axes(model)])
+        weight[len(weight) - len(self.tolerances) :] *= counted
+        return weight
+
+    def free(self, fit: Fit) -> NDArray[np.bool_]:
+        """
+        Return which unknowns of a fit can still move: those that no bound holds back.
+
+        :param fit: the fit.
+        :return: shape (unknowns,).
+        """
+        x = self.pack(fit.model)
+        low, high = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2).T
+        pull = fit.slope.T @ fit.left + self.prior(fit.model) * x
+        held: NDArray[np.bool_] = ((x <= low) & (pull > 0.0)) | ((x >= high) & (pull < 0.0))
+        return ~held
 
     def labels(self, model: Model) -> list[str]:
         """Return a name for each unknown that holds in any model which has it."""
@@ -129,7 +159,7 @@ class Problem(Residuals):
         """
         x = self.pack(fit.model)
         axes = self.axes(fit.model)
-        prior = np.array([axis.spread**-2 for axis in axes])
+        prior = self.prior(fit.model)
         names = [p for c in fit.model.causes for p in c.parameters]
         timed = [j for j, p in enumerate(names) if p.search == 'instant']
         best, least = None, (1.0 - 1e-3) * fit.cost
@@ -156,7 +186,7 @@ class Problem(Residuals):
         """Return the fit that Levenberg and Marquardt's method comes to."""
         axes = self.axes(model)
         bounds = np.array([axis.ends for axis in axes]).reshape(-1, 2)
-        prior = np.array([axis.spread**-2 for axis in axes])
+        prior = self.prior(model)
         own = len(axes) - len(self.tolerances)
         # a tolerance that a cause owns does not move
         owned = {(c.effect, c.place) for c in model.causes}
@@ -235,6 +265,38 @@ class Problem(Residuals):
         :param fit: the fit.
         :return: shape (unknowns, unknowns), on their axes.
         """
-        prior = np.array([axis.spread**-2 for axis in self.axes(fit.model)])
+        prior = self.prior(fit.model)
         normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(prior))
         return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+
+    def worths(self, fit: Fit) -> list[float]:
+        """
+        Return by how much squares would grow, to first order, were each cause left out.
+
+        :param fit: the fit.
+        :return: one for each cause; infinite for one whose size is no number of its own.
+        """
+        slope = fit.slope * self.free(fit)
+        prior = self.prior(fit.model) + 1e-9
+        products = slope.T @ slope + np.diag(prior)
+        x = self.pack(fit.model)
+        found = []
+        at = 0
+        for cause in fit.model.causes:
+            coordinates = Coordinates(cause.parameters)
+            gone = np.array([at + n for n in coordinates.sizes], dtype=np.int64)
+            stays = np.setdiff1d(
+                np.arange(len(x)), np.arange(at, at + len(cause.parameters)), assume_unique=True
+            )
+            at += len(cause.parameters)
+            if not gone.size:
+                found.append(math.inf)
+                continue
+            step = -x[gone]
+            # what stays makes up for it as far as it can
+            across = products[np.ix_(stays, gone)] @ step
+            made_up = np.linalg.solve(products[np.ix_(stays, stays)], across)
+            here = slope[:, gone] @ step
+            grown = float(here @ here) + 2.0 * float(here @ fit.left)
+            found.append(max(0.0, grown - float(across @ made_up)))
+        return found

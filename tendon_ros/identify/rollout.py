@@ -6,7 +6,7 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property
@@ -68,6 +68,17 @@ class Rollouts:
             np.array([m.value for m in segment.measured]).reshape(-1, len(segment.time))
             for segment in self.segments
         )
+
+    @cached_property
+    def _usual(self) -> dict[str, float]:
+        """The torque that each motor usually keeps below, by its name."""
+        found: dict[str, list[FloatArray]] = {}
+        for segment in self.segments:
+            for m in segment.measured:
+                if m.sensor.kind == 'motor_torque':
+                    found.setdefault(m.sensor.of, []).append(m.value[np.isfinite(m.value)])
+        joined = {name: np.abs(np.concatenate(rows)) for name, rows in found.items()}
+        return {n: float(np.quantile(rows, USUAL)) for n, rows in joined.items() if rows.size}
 
     def predicted(self, uses: Sequence[Sequence[EffectUse]]) -> tuple[FloatArray, ...]:
         """
@@ -152,7 +163,7 @@ class Rollouts:
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), bins), np.inf)
         found = rows.reading[:, self._columns[n]].T
-        return _as_reported(instrument, numbers, segment, found)
+        return _as_reported(instrument, numbers, segment, found, self._usual)
 
 
 def modified(instrument: Instrument) -> Numbers:
@@ -202,7 +213,11 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
 
 
 def _as_reported(
-    instrument: Instrument, numbers: Numbers, segment: Segment, found: FloatArray
+    instrument: Instrument,
+    numbers: Numbers,
+    segment: Segment,
+    found: FloatArray,
+    usual: Mapping[str, float],
 ) -> FloatArray:
     """
     Return the predictions with the torque limits of the motors seen as the recording sees them.
@@ -219,8 +234,7 @@ def _as_reported(
         if limit >= 1e3:
             continue
         # a limit that most torques passed is none: it would excuse whatever the model asks
-        known = np.abs(measured.value[np.isfinite(measured.value)])
-        limit = max(limit, float(np.quantile(known, USUAL))) if known.size else limit
+        limit = max(limit, usual.get(measured.sensor.of, 0.0))
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
         asked = gain * found[row] + bias
         given = np.clip(gain * measured.value + bias, -limit, limit)
