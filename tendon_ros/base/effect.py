@@ -67,6 +67,7 @@ class Effect:
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
     ``form``: how far the law may be from that of a machine which does have the effect, as a part
     of what the effect does: geometry and scales are exact, friction is not, creep least of all.
+    ``other(**parameters)``: whether they make it another effect that has a name of its own.
     """
 
     id: str
@@ -77,6 +78,7 @@ class Effect:
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
     form: float = 0.01
+    other: Callable[..., bool] | None = None
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

@@ -67,9 +67,13 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param problem: the data.
     :param candidate: the effect.
     :param values: of its parameters.
-    :return: whether: an event that always lasts, a ripple without a period, bristles as short as
-        those of any dry friction, a number of the file within its tolerance.
+    :return: whether: parameters that the effect gives another name, an event that always lasts, a
+        ripple without a period, bristles as short as those of any dry friction, a number of the
+        file within its tolerance.
     """
+    other = find(candidate.effect).other
+    if other is not None and other(**values):
+        return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     for t in problem.tolerances:
         if (t.effect, t.place) == (candidate.effect, candidate.place):

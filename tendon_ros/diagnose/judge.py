@@ -71,8 +71,7 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     """
     Return the rivals that these data cannot tell from a cause.
 
-    A rival at the same place that needs more parameters to do as well is a special case of itself
-    that looks like the cause; it is not counted.
+    A rival whose parameters make it the cause by another name was left out before.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
@@ -80,18 +79,9 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     :return: those whose misfit is as good.
     """
     final = found.final
-    cause = final.model.causes[k]
     samples = len(final.left)
     allowed = tie(problem, final)
-    return [
-        r
-        for r in found.rivals[k]
-        if (r.fit.cost - final.cost) / samples <= allowed
-        and (
-            r.candidate.place != cause.place
-            or len(r.candidate.parameters) <= len(cause.parameters)
-        )
-    ]
+    return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
 def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float]) -> Signs:

@@ -108,15 +108,20 @@ def judged(
             part = cause.probability / (1 + len(cause.indistinguishable))
             shared[other.effect, other.place] = max(shared.get((other.effect, other.place), 0.0),
                                                     part)  # fmt: skip
+    alike: dict[tuple[str, str], list[str]] = {}
+    for cause in causes:
+        members = [(cause.effect, cause.place)]
+        members += [(o.effect, o.place) for o in cause.indistinguishable]
+        for member in members:
+            alike[member] = [f'{e} at {p}' for e, p in members if (e, p) != member]
     seen = {(p.candidate.effect, p.candidate.place): p for p in found.proposals}
     rows = []
     for candidate in candidates:
         key = (candidate.effect, candidate.place)
         proposal = seen.get(key)
         why = ''
-        if key in named and named[key].indistinguishable:
-            others = ', '.join(f'{o.effect} at {o.place}' for o in named[key].indistinguishable)
-            why = f'the data cannot tell it from {others}'
+        if alike.get(key):
+            why = f'the data cannot tell it from {", ".join(alike[key])}'
         elif proposal is None or proposal.seen < SHOWS:
             why = 'at a size worth looking for it leaves no trace in these channels and motions'
         elif proposal.own < OWN * proposal.seen:

@@ -26,6 +26,11 @@ def asymmetric_friction_law(
     return (forward if side > 0.0 else backward), 0.0, 0.0
 
 
+def no_difference(forward: float, backward: float) -> bool:
+    """Return whether it is Coulomb friction: both directions are within a tenth."""
+    return abs(forward - backward) <= 0.1 * max(forward, backward)
+
+
 EFFECT = Effect(
     id='asymmetric_friction',
     title='Asymmetric friction',
@@ -54,4 +59,5 @@ EFFECT = Effect(
     law=asymmetric_friction_law,
     dissipative=True,
     form=0.06,
+    other=no_difference,
 )

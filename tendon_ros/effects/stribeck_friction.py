@@ -32,6 +32,11 @@ def stribeck_friction_law(
     return sliding + static * held, -2.0 * static * part * held * held / speed, 0.0
 
 
+def no_fall(static: float, sliding: float, speed: float) -> bool:
+    """Return whether it is Coulomb friction: it falls by less than a tenth once it slides."""
+    return static - sliding <= 0.1 * static
+
+
 EFFECT = Effect(
     id='stribeck_friction',
     title='Stribeck friction',
@@ -69,4 +74,5 @@ EFFECT = Effect(
     law=stribeck_friction_law,
     dissipative=True,
     form=0.06,
+    other=no_fall,
 )

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.identify.beside import Beside
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.fit import Fit, Problem
@@ -87,6 +88,7 @@ class Screen:
         tolerances = problem.tolerances
         first = fit.slope.shape[1] - len(tolerances)
         self._own = {(t.effect, t.place): first + n for n, t in enumerate(tolerances)}
+        self._beside = Beside(problem, fit)
         #: what is left once what moves already has moved as far as it likes, shape (samples,)
         self.left: FloatArray = fit.left - self._slope @ (self._inverse @ self._pull)
 
@@ -117,8 +119,14 @@ class Screen:
         """
         if not proposal.sizes or proposal.gain <= 0.0:
             return proposal
-        judged = self._judged(proposal, [step or 1.0 for step in proposal.steps])
-        return judged or proposal
+        changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
+        if changes is None:
+            return proposal
+        own = self._own.get((proposal.candidate.effect, proposal.candidate.place))
+        gain, steps = self._beside.best(changes, self._reach(proposal), own)
+        if not steps.any():
+            return replace(proposal, gain=0.0)
+        return replace(proposal, z=proposal.resized(steps.tolist()), gain=gain)
 
     def signatures(self, proposal: Proposal) -> FloatArray | None:
         """
@@ -167,17 +175,19 @@ class Screen:
     def _changes(self, proposal: Proposal, at: Sequence[float]) -> FloatArray | None:
         """Return what each size changes by one, taken at a size; shape (samples, sizes or 1)."""
         coordinates = Coordinates(proposal.candidate.parameters)
-        rows = []
-        for n, size in zip(proposal.sizes, at, strict=True):
-            steps = [size if m == n else 0.0 for m in proposal.sizes]
-            rows.append((list(proposal.resized(steps)), size))
-        found = []
-        for places, by in rows or [(list(proposal.z), 1.0)]:
-            model = self.fit.model.joined(proposal.candidate, coordinates.values(places))
-            change = (self.problem.left(model) - self.fit.left) / by
-            if not np.isfinite(change).all():
+        steps = np.zeros(len(proposal.sizes))
+        found: list[FloatArray] = []
+        before = self.fit.left
+        # one size after the other: where a spring rests says nothing before it has a stiffness
+        for n, size in enumerate(at or [1.0]):
+            if proposal.sizes:
+                steps[n] = size
+            values = coordinates.values(proposal.resized(steps.tolist()))
+            now = self.problem.left(self.fit.model.joined(proposal.candidate, values))
+            if not np.isfinite(now).all():
                 return None
-            found.append(change)
+            found.append((now - before) / size)
+            before = now
         return np.array(found).T
 
     def _projected(self, candidate: Candidate, changes: FloatArray) -> FloatArray:
@@ -190,10 +200,16 @@ class Screen:
         own: FloatArray = changes - self._slope @ (inverse @ (self._slope.T @ changes))
         return own
 
+    def _reach(self, proposal: Proposal) -> FloatArray:
+        """Return how far each size may go down and up, shape (2, sizes)."""
+        axes = Coordinates(proposal.candidate.parameters).axes
+        ends = np.array([axes[n].ends for n in proposal.sizes]).reshape(-1, 2).T
+        reach: FloatArray = np.clip(ends - proposal.base, -FARTHEST, FARTHEST)
+        return reach
+
     def _best(self, proposal: Proposal, own: FloatArray) -> FloatArray:
         """Return the steps that fit best, none where it may not be."""
-        axes = Coordinates(proposal.candidate.parameters).axes
-        low = np.array([axes[n].ends[0] - proposal.base for n in proposal.sizes])
+        low = self._reach(proposal)[0]
         kept = np.arange(len(low))
         best = np.zeros(len(low))
         while len(kept):

@@ -81,6 +81,7 @@ def test_the_json_is_as_the_contract_says(two_outcome):
     cause = data['causes'][0]
     assert set(cause) == {
         'effect', 'place', 'probability', 'parameters', 'indistinguishable', 'shrink',
+        'recording',
     }  # fmt: skip
     assert {'before', 'without_this', 'after'} <= set(cause['shrink'])
     for parameter in cause['parameters'].values():
