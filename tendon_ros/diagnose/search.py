@@ -101,14 +101,21 @@ class Search:
         self.report('fitting the tolerances', 0.0)
         state = self._settled(self.problem.empty)
         found.states.append(state)
+        self.report('screening the candidates', 0.03)
+        screen = Screen(self.problem, state)
+        proposals = self.screened(state, screen)
+        found.proposals = best_of(proposals)
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._settled(model)
             found.states.append(state)
-        for turn in range(ROUNDS):
-            if found.proposals and not self.open_question(state):
+        for turn in range(len(found.states) - 1, ROUNDS):
+            if not self.open_question(state):
                 break
-            self.report('looking for causes', 0.05 + 0.15 * turn)
-            grown = self._grown(found, state)
+            self.report(f'looking for causes, round {turn + 1}', 0.05 + 0.15 * turn)
+            if state is not found.start:
+                screen = Screen(self.problem, state)
+                proposals = self.screened(state, screen)
+            grown = self._grown(found, screen, proposals)
             if grown is None:
                 break
             state = grown
@@ -119,17 +126,12 @@ class Search:
         self._ordered(found)
         return found
 
-    def _grown(self, found: Found, state: Fit) -> Fit | None:
+    def _grown(self, found: Found, screen: Screen, proposals: Sequence[Proposal]) -> Fit | None:
         """Return a state with the causes that explain most together; None where none does."""
-        screen = Screen(self.problem, state)
-        proposals = self.screened(state, screen)
-        if not found.proposals:
-            found.proposals = best_of(proposals)
+        state = screen.fit
         leading = best_of(proposals)[:TELLING]
         found.telling |= {(p.candidate.effect, p.candidate.place) for p in leading}
         room = MOST - len(state.model.causes)
-        if room <= 0 or not self.open_question(state):
-            return None
         members = self._subset(screen, proposals, room)
         if not members:
             return None
@@ -146,6 +148,8 @@ class Search:
     def _subset(self, screen: Screen, proposals: Sequence[Proposal], most: int) -> list[Member]:
         """Return the proposals that together explain most, to first order."""
         telling = [p for p in proposals[:CORRECTED] if p.gain > 0.0]
+        if most <= 0:
+            return []
         signatures = list(self._pool.map(screen.signatures, telling))
         kept = [(p, s) for p, s in zip(telling, signatures, strict=True) if s is not None]
         if not kept:

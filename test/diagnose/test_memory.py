@@ -52,7 +52,7 @@ def test_goes_on_and_comes_to_the_same(interrupted, body, run, quick):
     again = quick(
         [run], body, memory=Memory(interrupted, [run], body), report=lambda w, _: told.append(w)
     ).diagnosis
-    assert 'looking for causes' not in told
+    assert 'looking for causes, round 1' not in told
     assert told
     assert [(c.effect, c.place) for c in again.causes] == [
         (c.effect, c.place) for c in whole.causes
@@ -68,7 +68,7 @@ def test_a_stop_before_the_first_step_leaves_nothing(tmp_path, body, run, quick)
     path = tmp_path / 'unfinished.json'
     memory = Memory(path, [run], body)
     with pytest.raises(Stopped):
-        quick([run], body, memory=memory, report=stopping('looking for causes'))
+        quick([run], body, memory=memory, report=stopping('looking for causes, round 1'))
     assert memory.models() == []
 
 
