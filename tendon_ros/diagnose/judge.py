@@ -52,9 +52,10 @@ class Signs:
         )
 
 
-#: weights of the features, from 16 cases (26 causes) of development seed 11: few, so that the
-#: probabilities are rough; more cases make them better
-WEIGHTS = np.array([-1.24, 0.99, -1.91])
+#: structured power that recordings without any effect may leave
+LEFT_NOISE = 0.05
+#: weights of the features, from 55 cases (89 causes) of development seeds 30 and 31
+WEIGHTS = np.array([0.13, 0.92, -5.85])
 
 
 def probability(signs: Signs) -> float:
@@ -103,6 +104,11 @@ def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float])
     return Signs(worth, gains[1], left, explained, form)
 
 
+#: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
+#: changes with its logarithm
+EVEN, STEEP = 1.6, 2.5
+
+
 def left_over(left: float, form: float) -> float:
     """
     Return the probability that something of the gap has a cause that was not named.
@@ -111,8 +117,5 @@ def left_over(left: float, form: float) -> float:
     :param form: what the laws of the causes may leave although they are right.
     :return: 0 to 1.
     """
-    return 1.0 / (1.0 + math.exp(-2.5 * math.log(max(left, 1e-9) / (LEFT_NOISE + form))))
-
-
-#: structured power that recordings without any effect leave
-LEFT_NOISE = 0.12
+    ratio = max(left, 1e-9) / (LEFT_NOISE + form)
+    return 1.0 / (1.0 + math.exp(-STEEP * math.log(ratio / EVEN)))

@@ -62,5 +62,5 @@ EFFECT = Effect(
     hook='elongation',
     law=cable_slip_law,
     switches=switches,
-    form=0.025,
+    form=0.1,
 )
