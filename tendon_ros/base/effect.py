@@ -67,7 +67,8 @@ class Effect:
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
     ``form``: how far the law may be from that of a machine which does have the effect, as a part
     of what the effect does: geometry and scales are exact, friction is not, creep least of all.
-    ``other(**parameters)``: whether they make it another effect that has a name of its own.
+    ``other(**parameters)``: the name and parameters of a simpler effect that these make it, if
+    any.
     """
 
     id: str
@@ -78,7 +79,7 @@ class Effect:
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
     form: float = 0.01
-    other: Callable[..., bool] | None = None
+    other: Callable[..., tuple[str, dict[str, float]] | None] | None = None
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

@@ -62,23 +62,19 @@ def tie(problem: Problem, best: Fit) -> float:
 
 def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
-    Return whether a fit has bent an effect into another that has a name of its own.
+    Return whether a fit has bent an effect into something else.
 
     :param problem: the data.
     :param candidate: the effect.
     :param values: of its parameters.
-    :return: whether: parameters that the effect gives another name, an event that always lasts, a
-        ripple without a period, bristles as short as those of any dry friction, a number of the
-        file within its tolerance.
+    :return: whether: into another effect that has a name of its own, an event that always lasts,
+        a ripple without a period, a number of the file within its tolerance.
     """
-    other = find(candidate.effect).other
-    if other is not None and other(**values):
-        return True
-    longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     for t in problem.tolerances:
         if (t.effect, t.place) == (candidate.effect, candidate.place):
             [value] = values.values()
             return t.axis.low < value < t.axis.high
+    longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     for p in candidate.parameters:
         if p.search == 'instant' and not BEGUN < values[p.name] / longest < 1.0 - BEGUN:
             return True
@@ -86,6 +82,25 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
             return True
         if p.search == 'cycles' and values[p.name] < 1.0:
             return True
-        if p.search == 'shape' and values[p.name] < BRISTLE.high:
-            return True
-    return False
+    return simpler(candidate, values) is not None
+
+
+def simpler(
+    candidate: Candidate, values: Mapping[str, float]
+) -> tuple[Candidate, dict[str, float]] | None:
+    """
+    Return the simpler effect that parameters make of an effect.
+
+    :param candidate: the effect.
+    :param values: of its parameters.
+    :return: the other effect at the same place, with its parameters; None where there is none.
+    """
+    other = find(candidate.effect).other
+    found = None if other is None else other(**values)
+    if candidate.effect == 'presliding_friction' and values['angle'] < BRISTLE.high:
+        # all dry friction builds up over some angle
+        found = 'coulomb_friction', {'torque': values['torque']}
+    if found is None:
+        return None
+    name, parameters = found
+    return Candidate(name, candidate.place), parameters

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import degenerate, form_power, tie
+from tendon_ros.diagnose.form import degenerate, form_power, simpler, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.identify.candidate import Candidate
@@ -31,10 +32,12 @@ CORRECTED = 36  # proposals that are judged again at their own size
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 SHORTLIST = 10  # rivals of a cause that are fitted
 MOST = 5  # causes
-ROUNDS = 3  # of looking for more causes
+ROUNDS = 4  # of looking for more causes
+#: times as much for an event: of all times and recordings, one always fits some of the noise
+ATTEMPTS = 4.0
 #: part of what is left that a cause must explain which is smaller than the form of other laws; an
 #: event, which chooses its time, more of it
-TAKES, TAKES_EVENT = 0.6, 0.85
+TAKES, TAKES_EVENT = 0.7, 0.85
 #: times what is needed that a cause is worth, to first order, if it need not be left out to see
 CLEAR = 10.0
 #: part of what a fit would explain that first order is sure to see
@@ -90,6 +93,7 @@ class Search:
         self.report = report
         self._memory = memory
         self._pool = ThreadPoolExecutor(jobs)
+        self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
 
     def run(self) -> Found:
         """
@@ -108,21 +112,30 @@ class Search:
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._settled(model)
             found.states.append(state)
-        for turn in range(len(found.states) - 1, ROUNDS):
-            if not self.open_question(state):
+        turn = len(found.states) - 1
+        challenged: Fit | None = None
+        while True:
+            grown: Fit | None = None
+            if turn < ROUNDS and self.open_question(state):
+                self.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
+                if state is not found.start:
+                    screen = Screen(self.problem, state)
+                    proposals = self.screened(state, screen)
+                grown = self._grown(found, screen, proposals)
+                turn += 1
+            if grown is not None:
+                state = grown
+                found.states.append(state)
+                if self._memory:
+                    self._memory.keep([s.model for s in found.states])
+                continue
+            if challenged is state:
                 break
-            self.report(f'looking for causes, round {turn + 1}', 0.05 + 0.15 * turn)
-            if state is not found.start:
-                screen = Screen(self.problem, state)
-                proposals = self.screened(state, screen)
-            grown = self._grown(found, screen, proposals)
-            if grown is None:
+            # better causes may leave more to see: look again where a challenge has changed them
+            self._challenge(found)
+            if found.final is state:
                 break
-            state = grown
-            found.states.append(state)
-            if self._memory:
-                self._memory.keep([s.model for s in found.states])
-        self._challenge(found)
+            state = challenged = found.final
         self._ordered(found)
         return found
 
@@ -229,13 +242,15 @@ class Search:
         :return: whether it explains more than noise and the form of the other laws can.
         """
         gain, in_one = self.gains(before, after)
-        if gain <= LEAST and in_one <= LEAST_IN_ONE:
+        new = set(after.model.causes) - set(before.model.causes)
+        eager = all(c.instants for c in new)
+        least = ATTEMPTS if eager else 1.0
+        if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
             return False
         if gain > form_power(self.problem, start, before):
             return True
         # what the form of a law leaves has no other cause that would explain most of it
-        new = set(after.model.causes) - set(before.model.causes)
-        part = TAKES_EVENT if any(c.instants for c in new) else TAKES
+        part = TAKES_EVENT if eager else TAKES
         return gain > part * self.problem.structured(before.left)
 
     def open_question(self, state: Fit) -> bool:
@@ -277,10 +292,7 @@ class Search:
 
     def _pruned(self, start: Fit, state: Fit) -> Fit:
         """Drop causes that are none, and those that others have made superfluous."""
-        causes = state.model.causes
-        for k in reversed(range(len(causes))):
-            if degenerate(self.problem, causes[k], state.model.values(k)):
-                state = self._settled(state.model.without(k), self.problem.slopes(state))
+        state = self._renamed(state)
         checked: set[Candidate] = set()
         while True:
             worths = self.problem.worths(state)
@@ -298,7 +310,21 @@ class Search:
             if self.worthwhile(start, smaller, state):
                 checked.add(state.model.causes[k])
             else:
-                state = self._settled(smaller.model)
+                state = self._renamed(self._settled(smaller.model))
+
+    def _renamed(self, state: Fit) -> Fit:
+        """Give causes the names that their parameters deserve, and drop those that are none."""
+        model = state.model
+        taken = {(c.effect, c.place) for c in model.causes}
+        for k in reversed(range(len(model.causes))):
+            cause, values = model.causes[k], model.values(k)
+            if not degenerate(self.problem, cause, values):
+                continue
+            other = simpler(cause, values)
+            model = model.without(k)
+            if other is not None and (other[0].effect, other[0].place) not in taken:
+                model = model.joined(*other)
+        return state if model is state.model else self._settled(model)
 
     def _needed(self, start: Fit, state: Fit) -> float:
         """Return the fall of squares that a cause beside all others must be worth."""
@@ -310,30 +336,62 @@ class Search:
 
         One cause after the other, round and round, until each has stood its ground.
         """
+        self._merge(found)
+        changed = bool(self._stood)
         replaced = 0
-        stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
-        while True:
-            causes = found.final.model.causes
-            waiting = [c for c in causes if c not in stood]
-            if not waiting:
-                break
+        stood = self._stood
+        while waiting := [c for c in found.final.model.causes if c not in stood]:
             cause = waiting[0]
             self.report(
                 f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
             )
-            without = self._without(found, causes.index(cause))
+            state = found.final
+            without = self._without(found, state.model.causes.index(cause))
             rivals = self._challengers(found, cause, without)
             better = self._better(found, cause, rivals) if replaced < REPLACED else None
             if better is None:
                 stood[cause] = without, rivals
                 continue
             replaced += 1
+            changed = True
             found.states[-1] = self._pruned(found.start, better)
-            # what stood its ground did so beside the one that has gone
-            stood = {}
+            # who stood only just did so beside the one that has gone
+            stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
         causes = found.final.model.causes
-        found.without = [stood[c][0] for c in causes]
         found.rivals = [stood[c][1] for c in causes]
+        found.without = [
+            self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
+        ]
+        self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
+
+    def _merge(self, found: Found) -> None:
+        """Let one effect take the place of two at one place, if it does as well."""
+        for one, two in combinations(found.final.model.causes, 2):
+            causes = found.final.model.causes
+            if one.place != two.place or not {one, two} <= set(causes):
+                continue
+            state = found.final
+            model = state.model
+            for k in sorted((causes.index(one), causes.index(two)), reverse=True):
+                model = model.without(k)
+            smaller = self.problem.fitted(model, self.problem.slopes(state), 8, 1e-3)
+            among = [c for c in self.candidates if c.place == one.place]
+            proposals = best_of(self.screened(smaller, None, [], among))
+            rivals = self.fitted(smaller, proposals, smaller.cost - state.cost)
+            rivals = self._sharpened(found, smaller, rivals)
+            allowed = tie(self.problem, state) * len(state.left)
+            if rivals and rivals[0].fit.cost - state.cost < allowed:
+                self._stood = {}
+                found.states[-1] = self._settled(rivals[0].fit.model)
+
+    def _clearly(self, state: Fit, without: Fit, rivals: Sequence[Rival]) -> bool:
+        """Return whether a cause is missed so much more than any rival makes up for."""
+        missed = without.cost - state.cost
+        made_up = without.cost - min((r.fit.cost for r in rivals), default=without.cost)
+        behind = missed - made_up
+        return (
+            behind > CLEAR * tie(self.problem, state) * len(state.left) or made_up < 0.5 * missed
+        )
 
     def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
         """Return the fits of other candidates in the place of a cause, best first."""

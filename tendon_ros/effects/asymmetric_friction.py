@@ -26,9 +26,11 @@ def asymmetric_friction_law(
     return (forward if side > 0.0 else backward), 0.0, 0.0
 
 
-def no_difference(forward: float, backward: float) -> bool:
-    """Return whether it is Coulomb friction: both directions are within a tenth."""
-    return abs(forward - backward) <= 0.1 * max(forward, backward)
+def no_difference(forward: float, backward: float) -> tuple[str, dict[str, float]] | None:
+    """Return the Coulomb friction that it is where both directions are within a tenth."""
+    if abs(forward - backward) > 0.1 * max(forward, backward):
+        return None
+    return 'coulomb_friction', {'torque': 0.5 * (forward + backward)}
 
 
 EFFECT = Effect(
@@ -58,6 +60,6 @@ EFFECT = Effect(
     hook='budget',
     law=asymmetric_friction_law,
     dissipative=True,
-    form=0.06,
+    form=0.1,
     other=no_difference,
 )

@@ -32,9 +32,11 @@ def stribeck_friction_law(
     return sliding + static * held, -2.0 * static * part * held * held / speed, 0.0
 
 
-def no_fall(static: float, sliding: float, speed: float) -> bool:
-    """Return whether it is Coulomb friction: it falls by less than a tenth once it slides."""
-    return static - sliding <= 0.1 * static
+def no_fall(static: float, sliding: float, speed: float) -> tuple[str, dict[str, float]] | None:
+    """Return the Coulomb friction that it is where it falls by less than a tenth in sliding."""
+    if static - sliding > 0.1 * static:
+        return None
+    return 'coulomb_friction', {'torque': 0.5 * (static + sliding)}
 
 
 EFFECT = Effect(
@@ -73,6 +75,6 @@ EFFECT = Effect(
     hook='budget',
     law=stribeck_friction_law,
     dissipative=True,
-    form=0.06,
+    form=0.1,
     other=no_fall,
 )
