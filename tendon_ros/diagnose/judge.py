@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.form import form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
@@ -119,3 +120,21 @@ def left_over(left: float, form: float) -> float:
     """
     ratio = max(left, 1e-9) / (LEFT_NOISE + form)
     return 1.0 / (1.0 + math.exp(-STEEP * math.log(ratio / EVEN)))
+
+
+#: times the misfit of what was fitted that may stay in what was held out
+SURPRISE = 4.0
+
+
+def surprising(ready: Prepared, found: Found) -> bool:
+    """
+    Return whether what was held out holds something that no fit could know of, such as a push.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :return: whether to fit the blocks that were held out, and hold out others.
+    """
+    left = ready.problem.structures(found.final.left)[1]
+    unseen = ready.held.structures(ready.held.left(found.final.model))[1]
+    form = form_power(ready.problem, found.start, found.final)
+    return unseen > SURPRISE * (LEFT_NOISE + form + left)

@@ -55,6 +55,7 @@ class Prepared:
     held: Problem
     whole: Problem
     counts: tuple[tuple[FloatArray, ...], ...]
+    shift: int = 0
 
     def heard_again(self, model: Model) -> Prepared:
         """
@@ -76,7 +77,17 @@ class Prepared:
                 rollouts.segments, predicted, self.counts, strict=True
             )
         ]
-        return _problems(rollouts.instrument, segments, self.counts)
+        return _problems(rollouts.instrument, segments, self.counts, self.shift)
+
+    def moved(self, shift: int) -> Prepared:
+        """
+        Return the same with other blocks held out.
+
+        :param shift: by how many blocks to move them.
+        :return: the problems.
+        """
+        rollouts = self.whole.rollouts
+        return _problems(rollouts.instrument, rollouts.segments, self.counts, shift)
 
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepared:
@@ -91,38 +102,43 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepare
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
     noisy = [_with_noise(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    return _problems(instrument, [s for s, _ in noisy], tuple(c for _, c in noisy))
+    return _problems(instrument, [s for s, _ in noisy], tuple(c for _, c in noisy), 0)
 
 
 def _problems(
     instrument: Instrument,
     segments: Sequence[Segment],
     counts: tuple[tuple[FloatArray, ...], ...],
+    shift: int,
 ) -> Prepared:
     rollouts = Rollouts(instrument, segments)
     usable = [s.time > SETTLING for s in segments]
-    held = held_out(segments)
+    held = held_out(segments, shift)
     moving = tolerances(instrument)
     return Prepared(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, usable),
         counts,
+        shift,
     )
 
 
-def held_out(segments: Sequence[Segment]) -> list[BoolArray]:
+def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
     """
     Return which bins no fit may see.
 
     :param segments: the recordings.
+    :param shift: by how many blocks, or recordings, to move what is held out.
     :return: one mask a segment: every fourth recording where there are many, else blocks.
     """
     if len(segments) >= WHOLE:
-        return [np.full(len(s.time), n % KEPT == KEPT - 2) for n, s in enumerate(segments)]
+        return [
+            np.full(len(s.time), (n + shift) % KEPT == KEPT - 2) for n, s in enumerate(segments)
+        ]
     # blocks of different recordings are staggered, so that no phase of a motion is always unseen
     return [
-        (np.floor(s.time / BLOCK).astype(np.int64) + n) % KEPT == KEPT - 1
+        (np.floor(s.time / BLOCK).astype(np.int64) + n + shift) % KEPT == KEPT - 1
         for n, s in enumerate(segments)
     ]
 

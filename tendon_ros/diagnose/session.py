@@ -18,13 +18,13 @@ from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.judge import equals, left_over, probability, signs_of
+from tendon_ros.diagnose.judge import equals, left_over, probability, signs_of, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import patched
-from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.prepare import KEPT, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import everyone
@@ -78,6 +78,11 @@ def diagnose(
     candidates = everyone(instrument, sorted(measured), withhold)
     search = Search(ready.problem, candidates, jobs, report, memory)
     found = search.run()
+    if surprising(ready, found):
+        report('looking again: something happened in what was held out', 0.0)
+        ready = ready.moved(KEPT // 2)
+        search = Search(ready.problem, candidates, jobs, report)
+        found = search.run()
     report('judging', 0.85)
     weighed = tuple(
         Weighed(

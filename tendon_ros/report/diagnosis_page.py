@@ -175,6 +175,8 @@ def _card(diagnosis: Diagnosis, cause: Cause) -> Card:
         rows.append((f'{name}: {known[name].meaning}', value, interval))
     if rows:
         blocks.append(Table(('parameter', 'value', '95 % interval'), tuple(rows), wraps=True))
+    if cause.recording:
+        blocks.append(Prose(f'It happened in {cause.recording} alone.'))
     channel, text = worth(diagnosis, cause)
     if channel:
         blocks.append(Prose(f'It shows most in {channel}: {text}.'))

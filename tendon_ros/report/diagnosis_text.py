@@ -73,6 +73,8 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
         values.append(f'{name} {value} ({interval})')
     words = effect_words(cause.effect, cause.place)
     yield f'{percent(cause.probability)} {words}: {", ".join(values)}'.rstrip(' :')
+    if cause.recording:
+        yield f'  in {cause.recording} alone'
     others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
     if others:
         yield f'  these channels cannot tell it from {", ".join(others)}'

@@ -60,7 +60,7 @@ def test_writes_what_it_promises(bag, tmp_path, capsys):
     told = (out / 'README.txt').read_text()
     assert all(p.name in told for p in out.iterdir() if p.name not in ('README.txt', 'b'))
     assert 'report.html' in text
-    assert 'looking for cause 1' in progress
+    assert 'looking for causes, round 1' in progress
     assert '%' in progress
     assert 'looking for' not in text
 

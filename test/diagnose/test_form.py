@@ -1,0 +1,60 @@
+"""The form of laws: what a fit has bent an effect into goes by its own name."""
+
+import pytest
+
+from tendon_ros.diagnose.form import degenerate, form_power, simpler, tie
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+
+BENT = [
+    ('asymmetric_friction', {'forward': 0.2, 'backward': 0.21}, {'torque': 0.205}),
+    ('stribeck_friction', {'static': 0.2, 'sliding': 0.19, 'speed': 0.1}, {'torque': 0.195}),
+    ('presliding_friction', {'torque': 0.3, 'angle': 1e-4}, {'torque': 0.3}),
+]
+OWN = [
+    ('asymmetric_friction', {'forward': 0.2, 'backward': 0.4}),
+    ('stribeck_friction', {'static': 0.2, 'sliding': 0.1, 'speed': 0.1}),
+    ('presliding_friction', {'torque': 0.3, 'angle': 0.01}),
+    ('coulomb_friction', {'torque': 0.3}),
+]
+
+
+@pytest.mark.parametrize(('effect', 'values', 'plain'), BENT, ids=[b[0] for b in BENT])
+def test_friction_that_is_plain_is_called_so(effect, values, plain):
+    cause, parameters = simpler(Candidate(effect, 'pulley_3'), values)
+    assert (cause.effect, cause.place) == ('coulomb_friction', 'pulley_3')
+    assert parameters == pytest.approx(plain)
+
+
+@pytest.mark.parametrize(('effect', 'values'), OWN, ids=[o[0] for o in OWN])
+def test_friction_with_a_shape_of_its_own_keeps_its_name(sound_problem, effect, values):
+    candidate = Candidate(effect, 'pulley_3')
+    assert simpler(candidate, values) is None
+    assert not degenerate(sound_problem, candidate, values)
+
+
+@pytest.fixture(scope='module')
+def sound_problem(bench, sound):
+    return prepared(sound, bench).problem
+
+
+@pytest.mark.parametrize(
+    ('effect', 'place', 'values', 'bent'),
+    [
+        ('pretension', 'cable_12', {'scale': 0.97}, True),
+        ('pretension', 'cable_12', {'scale': 0.8}, False),
+        ('cable_slip', 'cable_12', {'jump': 1e-4, 'time': 0.1}, True),
+        ('cable_slip', 'cable_12', {'jump': 1e-4, 'time': 6.0}, False),
+        ('disturbance', 'pulley_3', {'torque': 0.1, 'start': 3.0, 'duration': 100.0}, True),
+        ('disturbance', 'pulley_3', {'torque': 0.1, 'start': 3.0, 'duration': 0.4}, False),
+        ('torque_ripple', 'motor_M', {'amplitude': 0.1, 'cycles': 0.6, 'phase': 0.0}, True),
+    ],
+)
+def test_what_is_no_cause(sound_problem, effect, place, values, bent):
+    assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+def test_without_a_cause_no_law_is_to_blame(sound_problem):
+    fit = sound_problem.fitted(sound_problem.empty, rounds=2)
+    assert form_power(sound_problem, fit, fit) == 0.0
+    assert tie(sound_problem, fit) < 0.05
