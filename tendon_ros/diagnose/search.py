@@ -37,7 +37,9 @@ ROUNDS = 4  # of looking for more causes
 ATTEMPTS = 4.0
 #: part of what is left that a cause must explain which is smaller than the form of other laws; an
 #: event, which chooses its time, more of it
-TAKES, TAKES_EVENT = 0.7, 0.85
+TAKES, TAKES_EVENT = 0.65, 0.85
+#: times the form of other laws that an event must explain: it fits whatever they once get wrong
+TIMES_EVENT = 10.0
 #: times what is needed that a cause is worth, to first order, if it need not be left out to see
 CLEAR = 10.0
 #: part of what a fit would explain that first order is sure to see
@@ -45,6 +47,8 @@ FIRST_ORDER_SEES = 0.4
 TELLING = 20  # candidates of each round that may replace one of many causes
 MANY = 3  # causes from which on not every candidate challenges each of them
 REPLACED = 6  # causes at most that challenges replace
+#: norm of a signature in noise deviations, imitations taken off, that leaves a trace
+TRACE = 2.0
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 #: part of the noise's power that a cause must explain, over all samples and over one channel
@@ -109,6 +113,11 @@ class Search:
         screen = Screen(self.problem, state)
         proposals = self.screened(state, screen)
         found.proposals = best_of(proposals)
+        # what leaves no trace at a typical size is not asked again
+        traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
+        self.candidates = tuple(
+            c for c in self.candidates if c.instants or (c.effect, c.place) in traced
+        )
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._settled(model)
             found.states.append(state)
@@ -247,7 +256,8 @@ class Search:
         least = ATTEMPTS if eager else 1.0
         if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
             return False
-        if gain > form_power(self.problem, start, before):
+        times = TIMES_EVENT if eager else 1.0
+        if gain > times * form_power(self.problem, start, before):
             return True
         # what the form of a law leaves has no other cause that would explain most of it
         part = TAKES_EVENT if eager else TAKES

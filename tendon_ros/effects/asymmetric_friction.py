@@ -60,6 +60,6 @@ EFFECT = Effect(
     hook='budget',
     law=asymmetric_friction_law,
     dissipative=True,
-    form=0.1,
+    form=0.06,
     other=no_difference,
 )

@@ -64,7 +64,7 @@ EFFECT = Effect(
             unit='s',
             meaning='time constant at a held elongation',
             neutral=math.nan,
-            low=0.01,
+            low=0.3,
             high=1e4,
             typical=5.0,
         ),

@@ -44,5 +44,5 @@ EFFECT = Effect(
     hook='budget',
     law=coulomb_friction_law,
     dissipative=True,
-    form=0.1,
+    form=0.06,
 )

@@ -65,5 +65,5 @@ EFFECT = Effect(
     law=presliding_friction_law,
     modify=modify,
     dissipative=True,
-    form=0.1,
+    form=0.06,
 )

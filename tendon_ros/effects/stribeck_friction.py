@@ -75,6 +75,6 @@ EFFECT = Effect(
     hook='budget',
     law=stribeck_friction_law,
     dissipative=True,
-    form=0.1,
+    form=0.06,
     other=no_fall,
 )

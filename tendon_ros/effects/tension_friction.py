@@ -47,5 +47,5 @@ EFFECT = Effect(
     hook='budget',
     law=tension_friction_law,
     dissipative=True,
-    form=0.1,
+    form=0.06,
 )
