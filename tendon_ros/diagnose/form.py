@@ -23,6 +23,9 @@ TIE, TIE_FORM = 0.015, 0.5
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
 
+#: events nearer to each other than this are one [s]
+AT_ONCE = 0.5
+
 
 def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     """
@@ -104,3 +107,31 @@ def simpler(
         return None
     name, parameters = found
     return Candidate(name, candidate.place), parameters
+
+
+def at_once(
+    one: tuple[Candidate, Mapping[str, float]], other: tuple[Candidate, Mapping[str, float]]
+) -> bool:
+    """
+    Return whether two events are at the same time: no push is quite the one of its law.
+
+    :param one: an effect with its parameters.
+    :param other: another one.
+    :return: whether both are events that may be one, in the same recording.
+    """
+    first, second = _span(*one), _span(*other)
+    if first is None or second is None:
+        return False
+    if one[0].only != other[0].only and one[0].only and other[0].only:
+        return False
+    return first[0] - AT_ONCE < second[1] and second[0] - AT_ONCE < first[1]
+
+
+def _span(candidate: Candidate, values: Mapping[str, float]) -> tuple[float, float] | None:
+    """Return begin and end of an event [s]; None of what lasts."""
+    begun = [values[p.name] for p in candidate.instants]
+    if not begun:
+        return None
+    return begun[0], begun[0] + sum(
+        values[p.name] for p in candidate.parameters if p.search == 'duration'
+    )

@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import degenerate, form_power, simpler, tie
+from tendon_ros.diagnose.form import at_once, degenerate, form_power, simpler, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.identify.candidate import Candidate
@@ -35,9 +35,8 @@ MOST = 5  # causes
 ROUNDS = 4  # of looking for more causes
 #: times as much for an event: of all times and recordings, one always fits some of the noise
 ATTEMPTS = 4.0
-#: part of what is left that a cause must explain which is smaller than the form of other laws; an
-#: event, which chooses its time, more of it
-TAKES, TAKES_EVENT = 0.65, 0.85
+#: part of what is left that a cause must explain which is smaller than the form of other laws
+TAKES = 0.65
 #: times the form of other laws that an event must explain: it fits whatever they once get wrong
 TIMES_EVENT = 10.0
 #: times what is needed that a cause is worth, to first order, if it need not be left out to see
@@ -170,6 +169,11 @@ class Search:
     def _subset(self, screen: Screen, proposals: Sequence[Proposal], most: int) -> list[Member]:
         """Return the proposals that together explain most, to first order."""
         telling = [p for p in proposals[:CORRECTED] if p.gain > 0.0]
+        model = screen.fit.model
+        known = [(c, model.values(k)) for k, c in enumerate(model.causes)]
+        telling = [
+            p for p in telling if not any(at_once((p.candidate, p.values), e) for e in known)
+        ]
         if most <= 0:
             return []
         signatures = list(self._pool.map(screen.signatures, telling))
@@ -256,12 +260,11 @@ class Search:
         least = ATTEMPTS if eager else 1.0
         if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
             return False
-        times = TIMES_EVENT if eager else 1.0
-        if gain > times * form_power(self.problem, start, before):
-            return True
+        form = form_power(self.problem, start, before)
+        if eager:
+            return gain > TIMES_EVENT * form
         # what the form of a law leaves has no other cause that would explain most of it
-        part = TAKES_EVENT if eager else TAKES
-        return gain > part * self.problem.structured(before.left)
+        return gain > form or gain > TAKES * self.problem.structured(before.left)
 
     def open_question(self, state: Fit) -> bool:
         """
@@ -303,6 +306,7 @@ class Search:
     def _pruned(self, start: Fit, state: Fit) -> Fit:
         """Drop causes that are none, and those that others have made superfluous."""
         state = self._renamed(state)
+        state = self._parted(state)
         checked: set[Candidate] = set()
         while True:
             worths = self.problem.worths(state)
@@ -335,6 +339,20 @@ class Search:
             if other is not None and (other[0].effect, other[0].place) not in taken:
                 model = model.joined(*other)
         return state if model is state.model else self._settled(model)
+
+    def _parted(self, state: Fit) -> Fit:
+        """Keep of events that happen at once the one that is worth most: they are one."""
+        model = state.model
+        order = np.argsort(self.problem.worths(state))
+        gone: list[int] = []
+        for k in order.tolist():
+            own = model.causes[k], model.values(k)
+            others = [n for n in range(len(model.causes)) if n != k and n not in gone]
+            if any(at_once(own, (model.causes[n], model.values(n))) for n in others):
+                gone.append(k)
+        for k in sorted(gone, reverse=True):
+            model = model.without(k)
+        return self._settled(model, self.problem.slopes(state)) if gone else state
 
     def _needed(self, start: Fit, state: Fit) -> float:
         """Return the fall of squares that a cause beside all others must be worth."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 import math
 
 import numpy as np
@@ -24,7 +25,9 @@ FloatArray = NDArray[np.float64]
 
 #: time over which what is left remembers itself [s]: so many bins count as one against a prior
 REMEMBERED = 0.4
-RETIMED = (-0.08, -0.04, -0.02, -0.01, 0.01, 0.02, 0.04, 0.08)  # [s] that events are tried at
+#: [s] that begin and end of events are tried at, and how often
+RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
+MOVES = 3
 
 
 @dataclass(frozen=True)
@@ -146,10 +149,12 @@ class Problem(Residuals):
         :return: the fit.
         """
         fit = self._descended(model, known, rounds, accuracy)
-        later = self._retimed(fit)
-        if later is None:
-            return fit
-        return self._descended(later, self.slopes(fit), rounds, accuracy)
+        for _ in range(MOVES):
+            later = self._retimed(fit)
+            if later is None:
+                break
+            fit = self._descended(later, self.slopes(fit), rounds, accuracy)
+        return fit
 
     def _retimed(self, fit: Fit) -> Model | None:
         """
@@ -160,21 +165,30 @@ class Problem(Residuals):
         x = self.pack(fit.model)
         axes = self.axes(fit.model)
         prior = self.prior(fit.model)
-        names = [p for c in fit.model.causes for p in c.parameters]
-        timed = [j for j, p in enumerate(names) if p.search == 'instant']
-        best, least = None, (1.0 - 1e-3) * fit.cost
-        for j in timed:
-            start = x[j]
-            for shift in RETIMED:
+        least = (1.0 - 1e-3) * fit.cost
+        better: FloatArray | None = None
+        at = 0
+        for cause in fit.model.causes:
+            names = [p.search for p in cause.parameters]
+            begin = [at + n for n, name in enumerate(names) if name == 'instant']
+            lasts = [at + n for n, name in enumerate(names) if name == 'duration']
+            at += len(names)
+            # the whole event moves; its begin alone; its end alone
+            moves = [[(j, 1.0)] for j in begin]
+            moves += [[(j, 1.0), (k, -1.0)] for j in begin for k in lasts]
+            moves += [[(k, 1.0)] for k in lasts]
+            for move, shift in product(moves, RETIMED):
                 trial = x.copy()
-                trial[j] = start + shift / axes[j].scale
+                for j, sign in move:
+                    low, high = axes[j].low, axes[j].high
+                    moved = axes[j].value(x[j]) + sign * shift
+                    trial[j] = axes[j].place(min(max(moved, low), high))
                 left = self.left(self.unpack(fit.model, trial))
                 cost = float(left @ left + prior @ trial**2)
                 if cost < least:
-                    best, least = trial, cost
-            if best is not None:
-                x = best
-        return None if best is None else self.unpack(fit.model, best)
+                    better, least = trial, cost
+            x = x if better is None else better
+        return None if better is None else self.unpack(fit.model, better)
 
     def _descended(
         self,

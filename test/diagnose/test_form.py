@@ -2,7 +2,7 @@
 
 import pytest
 
-from tendon_ros.diagnose.form import degenerate, form_power, simpler, tie
+from tendon_ros.diagnose.form import at_once, degenerate, form_power, simpler, tie
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -58,3 +58,23 @@ def test_without_a_cause_no_law_is_to_blame(sound_problem):
     fit = sound_problem.fitted(sound_problem.empty, rounds=2)
     assert form_power(sound_problem, fit, fit) == 0.0
     assert tie(sound_problem, fit) < 0.05
+
+
+PUSH = {'torque': 0.1, 'start': 3.0, 'duration': 0.5}
+
+
+@pytest.mark.parametrize(
+    ('effect', 'place', 'only', 'values', 'same'),
+    [
+        ('disturbance', 'pulley_2', '', {'torque': 0.2, 'start': 3.6, 'duration': 0.3}, True),
+        ('cable_slip', 'cable_12', 'free', {'jump': 1e-4, 'time': 2.8}, True),
+        ('cable_slip', 'cable_12', 'mixed', {'jump': 1e-4, 'time': 2.8}, False),
+        ('disturbance', 'pulley_3', 'free', {'torque': 0.2, 'start': 6.0, 'duration': 0.3}, False),
+        ('coulomb_friction', 'pulley_3', '', {'torque': 0.2}, False),
+    ],
+)
+def test_events_at_once_are_one(effect, place, only, values, same):
+    push = Candidate('disturbance', 'pulley_3', 'free'), PUSH
+    other = Candidate(effect, place, only), values
+    assert at_once(push, other) is same
+    assert at_once(other, push) is same
