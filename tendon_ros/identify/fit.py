@@ -27,7 +27,8 @@ FloatArray = NDArray[np.float64]
 REMEMBERED = 0.4
 #: [s] that begin and end of events are tried at, and how often
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
-MOVES = 3
+MOVES = 2
+CAREFUL = 1e-3  # accuracy from which on they are
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,8 @@ class Problem(Residuals):
         :return: the fit.
         """
         fit = self._descended(model, known, rounds, accuracy)
-        for _ in range(MOVES):
+        # a rough fit is for comparing; where events are is found once it matters
+        for _ in range(MOVES if accuracy <= CAREFUL else 0):
             later = self._retimed(fit)
             if later is None:
                 break
