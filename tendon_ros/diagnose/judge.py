@@ -48,15 +48,17 @@ class Signs:
             [
                 1.0,
                 math.log10(worth),
-                math.log10(min(max(left, 1e-2), 30.0)),
+                math.log10(min(max(left, LITTLE), MUCH)),
             ]
         )
 
 
+#: misfit in units of what is usual below and beyond which it says nothing more
+LITTLE, MUCH = 0.3, 30.0
 #: structured power that recordings without any effect may leave
 LEFT_NOISE = 0.05
 #: weights of the features, from 115 cases (201 causes) of development seeds 30, 31, 60, 61, 70, 71
-WEIGHTS = np.array([-0.66, 0.55, -2.99])
+WEIGHTS = np.array([-0.43, 0.56, -4.13])
 
 
 def probability(signs: Signs) -> float:

@@ -42,4 +42,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
+    form=0.025,
 )
