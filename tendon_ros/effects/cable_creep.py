@@ -45,6 +45,13 @@ def cable_creep_law(
     )
 
 
+def soft_at_once(fraction: float, time: float) -> tuple[str, dict[str, float]] | None:
+    """Return the softer cable that it is where it has relaxed before anyone could see it creep."""
+    if time > 0.3:
+        return None
+    return 'cable_stiffness', {'scale': 1.0 - fraction}
+
+
 EFFECT = Effect(
     id='cable_creep',
     title='Cable creep',
@@ -64,7 +71,7 @@ EFFECT = Effect(
             unit='s',
             meaning='time constant at a held elongation',
             neutral=math.nan,
-            low=0.3,
+            low=0.01,
             high=1e4,
             typical=5.0,
         ),
@@ -74,4 +81,5 @@ EFFECT = Effect(
     stateful=True,
     dissipative=True,
     form=0.4,
+    other=soft_at_once,
 )

@@ -54,6 +54,13 @@ def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
 
 
+def test_creep_that_is_over_at_once_is_a_softer_cable():
+    other = simpler(Candidate('cable_creep', 'cable_12'), {'fraction': 0.2, 'time': 0.05})
+    assert other == (Candidate('cable_stiffness', 'cable_12'), {'scale': 0.8})
+    slow = {'fraction': 0.2, 'time': 3.0}
+    assert simpler(Candidate('cable_creep', 'cable_12'), slow) is None
+
+
 def test_without_a_cause_no_law_is_to_blame(sound_problem):
     fit = sound_problem.fitted(sound_problem.empty, rounds=2)
     assert form_power(sound_problem, fit, fit) == 0.0
