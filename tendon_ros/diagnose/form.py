@@ -13,7 +13,6 @@ import numpy as np
 
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.explanation import BRISTLE
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.starting import BEGUN, LASTS
 
@@ -22,7 +21,6 @@ from tendon_ros.identify.starting import BEGUN, LASTS
 TIE, TIE_FORM = 0.015, 0.5
 #: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
 COUNTED = 0.22
-
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -100,9 +98,6 @@ def simpler(
     """
     other = find(candidate.effect).other
     found = None if other is None else other(**values)
-    if candidate.effect == 'presliding_friction' and values['angle'] < BRISTLE.high:
-        # all dry friction builds up over some angle
-        found = 'coulomb_friction', {'torque': values['torque']}
     if found is None:
         return None
     name, parameters = found

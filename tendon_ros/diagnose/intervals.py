@@ -93,7 +93,7 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
             value, axis = centre[p.name], coordinates.axes[n]
             direction = np.zeros((1, fit.slope.shape[1]))
             if coordinates.paired(n):
-                for j, step in enumerate(_steps(len(z))):
+                for j, step in enumerate(SMALL * np.eye(len(z))):
                     moved = coordinates.values([a + b for a, b in zip(z, step, strict=True)])
                     direction[0, at + j] = (moved[p.name] - value) / SMALL
                 wide = float(spread.along(direction)[0])
@@ -111,11 +111,6 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
         at += len(z)
         found.append(row)
     return found
-
-
-def _steps(count: int) -> FloatArray:
-    """Return a small step along each axis."""
-    return SMALL * np.eye(count)
 
 
 def mean_square_interval(squares: Sequence[float]) -> tuple[float, float]:

@@ -36,6 +36,15 @@ def modify(numbers: Numbers, index: int, torque: float, angle: float) -> None:
     numbers['breakaway'][index] += angle
 
 
+#: angle [rad] over which any dry friction builds up: what takes more is pre-sliding by name
+BENDING = 3e-3
+
+
+def bending(torque: float, angle: float) -> tuple[str, dict[str, float]] | None:
+    """Return the Coulomb friction that it is where it builds up as all dry friction does."""
+    return None if angle >= BENDING else ('coulomb_friction', {'torque': torque})
+
+
 EFFECT = Effect(
     id='presliding_friction',
     title='Pre-sliding friction',
@@ -66,4 +75,5 @@ EFFECT = Effect(
     modify=modify,
     dissipative=True,
     form=0.06,
+    other=bending,
 )

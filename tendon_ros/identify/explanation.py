@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.effects import find
+from tendon_ros.effects.presliding_friction import BENDING
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.coordinates import Coordinates
@@ -23,7 +24,7 @@ FloatArray = NDArray[np.float64]
 
 #: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
 #: takes more than its upper end is pre-sliding friction by name
-BRISTLE = Axis('angle', 'rad', 1e-6, 3e-3, 1e-3, math.log(4.0), log=True, spread=1.0)
+BRISTLE = Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0)
 
 
 @dataclass(frozen=True)

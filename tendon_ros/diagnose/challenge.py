@@ -1,0 +1,166 @@
+"""
+The challenge: every other candidate may take the place of each cause.
+
+One cause after the other, round and round, until each has stood its ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+from tendon_ros.diagnose.form import tie
+from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.screening import Screen
+
+CLOSE = 6  # rivals that are fitted as carefully as the cause itself
+MANY = 3  # causes from which on not every candidate challenges each of them
+REPLACED = 6  # causes at most that challenges replace
+
+
+class Challenge:
+    """
+    Challenges causes; those that stood clearly are not asked again.
+
+    :param steps: of the search.
+    """
+
+    def __init__(self, steps: Steps) -> None:
+        self._steps = steps
+        self._problem = steps.problem
+        self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
+
+    def of(self, found: Found) -> None:
+        """
+        Challenge the causes of the last state; keep whoever fits better.
+
+        :param found: its last state, rivals and states without a cause are replaced.
+        """
+        self._merge(found)
+        changed = bool(self._stood)
+        replaced = 0
+        stood = self._stood
+        while waiting := [c for c in found.final.model.causes if c not in stood]:
+            cause = waiting[0]
+            self._steps.report(
+                f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
+            )
+            state = found.final
+            without = self._without(found, state.model.causes.index(cause))
+            rivals = self._challengers(found, cause, without)
+            better = self._better(found, cause, rivals) if replaced < REPLACED else None
+            if better is None:
+                stood[cause] = without, rivals
+                continue
+            replaced += 1
+            changed = True
+            found.states[-1] = self._steps.pruned(found.start, better)
+            # who stood only just did so beside the one that has gone
+            stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
+        causes = found.final.model.causes
+        found.rivals = [stood[c][1] for c in causes]
+        found.without = [
+            self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
+        ]
+        self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
+
+    def _merge(self, found: Found) -> None:
+        """Let one effect take the place of two at one place, if it does as well."""
+        for one, two in combinations(found.final.model.causes, 2):
+            causes = found.final.model.causes
+            if one.place != two.place or not {one, two} <= set(causes):
+                continue
+            state = found.final
+            model = state.model
+            for k in sorted((causes.index(one), causes.index(two)), reverse=True):
+                model = model.without(k)
+            smaller = self._problem.fitted(model, self._problem.slopes(state), 8, 1e-3)
+            among = [c for c in self._steps.candidates if c.place == one.place]
+            proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
+            rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
+            rivals = self._sharpened(found, smaller, rivals)
+            allowed = tie(self._problem, state) * len(state.left)
+            if rivals and rivals[0].fit.cost - state.cost < allowed:
+                self._stood = {}
+                found.states[-1] = self._steps.settled(rivals[0].fit.model)
+
+    def _clearly(self, state: Fit, without: Fit, rivals: Sequence[Rival]) -> bool:
+        """Return whether a cause is missed so much more than any rival makes up for."""
+        missed = without.cost - state.cost
+        made_up = without.cost - min((r.fit.cost for r in rivals), default=without.cost)
+        behind = missed - made_up
+        return (
+            behind > CLEAR * tie(self._problem, state) * len(state.left) or made_up < 0.5 * missed
+        )
+
+    def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
+        """Return the fits of other candidates in the place of a cause, best first."""
+        proposals = found.proposals
+        if without is not found.start:
+            among = self._likely(found, cause)
+            proposals = best_of(
+                self._steps.screened(Screen(self._problem, without), [cause], among)
+            )
+        proposals = [p for p in proposals if p.candidate != cause]
+        rivals = self._steps.fitted(without, proposals, without.cost - found.final.cost)
+        return self._sharpened(found, without, rivals)
+
+    def _without(self, found: Found, k: int) -> Fit:
+        """Return the final state without one cause, everything else fitted again."""
+        state = found.final
+        if len(state.model.causes) == 1:
+            return found.start
+        known = self._problem.slopes(state)
+        return self._problem.fitted(state.model.without(k), known, rounds=8, accuracy=1e-3)
+
+    def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
+        """Return who might replace one of many causes: kin, and what explained much at a time."""
+        if len(found.final.model.causes) < MANY:
+            return None
+        kin = [
+            c for c in self._steps.candidates if c.effect == cause.effect or c.place == cause.place
+        ]
+        telling = [c for c in self._steps.candidates if (c.effect, c.place) in found.telling]
+        return list(dict.fromkeys([*kin, *telling]))
+
+    def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
+        """Fit the rivals that come near as carefully as the cause that they challenge."""
+        state = found.final
+        near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
+        near += tie(self._problem, state) * len(state.left)
+        close = [r for r in rivals if r.fit.cost < near][:CLOSE]
+        equal = state.cost + tie(self._problem, state) * len(state.left)
+
+        def careful(rival: Rival) -> Fit:
+            # derivatives of another state stall a fit: two places then seem to differ that do not
+            fit = self._problem.fitted(rival.fit.model, rounds=10, accuracy=1e-3)
+            if fit.cost <= equal:
+                return fit
+            return self._problem.fitted(fit.model, rounds=6, accuracy=1e-3)
+
+        fits = list(self._steps.pool.map(careful, close))
+        sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
+        return sorted([*sharp, *(r for r in rivals if r not in close)], key=judged_cost)
+
+    def _better(self, found: Found, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
+        """Return a fit with another candidate: one that fits better, or as well and is simpler."""
+        state = found.final
+
+        def wins(rival: Candidate, fit: Fit) -> bool:
+            more = len(rival.parameters) - len(cause.parameters)
+            ahead = (state.cost - fit.cost) / len(state.left)
+            if more < 0:
+                return ahead > -tie(self._problem, state)
+            if more > 0:
+                return ahead > tie(self._problem, fit)
+            return fit.cost < 0.99 * state.cost
+
+        for rival in rivals[:2]:
+            if wins(rival.candidate, rival.fit):
+                trial = self._steps.settled(rival.fit.model, self._problem.slopes(state))
+                if wins(rival.candidate, trial):
+                    return trial
+        return None

@@ -1,0 +1,199 @@
+"""The steps that looking for causes and challenging them are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.form import at_once, degenerate, simpler
+from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.worth import needed, worthwhile
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.screening import Proposal, Screen
+
+FloatArray = NDArray[np.float64]
+Report = Callable[[str, float], None]
+
+CORRECTED = 36  # proposals that are judged again at their own size
+SHORTLIST = 10  # rivals of a cause that are fitted
+#: times what is needed that a cause is worth, to first order, if it need not be left out to see
+CLEAR = 10.0
+#: part of what a fit would explain that first order is sure to see
+FIRST_ORDER_SEES = 0.4
+#: part of the cost that one more parameter must save
+PARAMETER = 0.004
+
+
+def judged_cost(rival: Rival) -> float:
+    """
+    Return the cost of a fit, more where more parameters made it.
+
+    :param rival: the fit.
+    :return: squares in noise deviations.
+    """
+    return rival.fit.cost * (1.0 + PARAMETER * len(rival.candidate.parameters))
+
+
+def best_of(proposals: Sequence[Proposal]) -> list[Proposal]:
+    """
+    Return the best proposal of each candidate.
+
+    :param proposals: best first.
+    :return: best first.
+    """
+    best: dict[Candidate, Proposal] = {}
+    for proposal in proposals:
+        best.setdefault(proposal.candidate, proposal)
+    return list(best.values())
+
+
+class Steps:
+    """
+    Screens, fits and prunes on one problem.
+
+    :param problem: the fitted bins.
+    :param candidates: all that may be named.
+    :param jobs: threads.
+    :param report: called with what is being done and the part that is done.
+    """
+
+    def __init__(
+        self, problem: Problem, candidates: Sequence[Candidate], jobs: int, report: Report
+    ) -> None:
+        self.problem = problem
+        self.candidates = tuple(candidates)
+        self.report = report
+        self.pool = ThreadPoolExecutor(jobs)
+
+    def screened(
+        self,
+        screen: Screen,
+        leave: Sequence[Candidate] = (),
+        among: Sequence[Candidate] | None = None,
+    ) -> list[Proposal]:
+        """
+        Return the proposals of all candidates, two of each at most, best first.
+
+        :param screen: of what holds already.
+        :param leave: candidates to leave out.
+        :param among: those to ask; all where None.
+        :return: the proposals; those that explain most are judged again at their own size.
+        """
+        causes = screen.fit.model.causes
+        # what happens at a time may happen again, in another recording
+        lasting = [c for c in causes if not c.instants]
+        out = {(c.effect, c.place) for c in (*lasting, *leave)}
+        everyone = self.candidates if among is None else among
+        asked = [c for c in everyone if (c.effect, c.place) not in out]
+        first = [
+            p
+            for proposals in self.pool.map(screen.proposals, asked)
+            for p in proposals[:2]
+            if p.candidate not in causes
+        ]
+        first.sort(key=lambda p: -p.gain)
+        again = list(self.pool.map(screen.corrected, first[:CORRECTED]))
+        return sorted([*again, *first[CORRECTED:]], key=lambda p: -p.gain)
+
+    def fitted(self, state: Fit, proposals: Sequence[Proposal], needed: float) -> list[Rival]:
+        """
+        Fit the proposals that may explain as much as is needed, each beside what holds already.
+
+        :param state: what holds already.
+        :param proposals: best first, one of each candidate.
+        :param needed: by how much squares must fall.
+        :return: the fits, best first.
+        """
+        near = [p for p in proposals if p.gain > FIRST_ORDER_SEES * needed]
+        chosen = near[:SHORTLIST] or list(proposals[:1])
+        known = self.problem.slopes(state)
+
+        def one(proposal: Proposal) -> Rival:
+            model = state.model.joined(proposal.candidate, proposal.values)
+            # sizes and shapes lie along curved valleys: more of them, more steps
+            rounds = 6 * len(proposal.candidate.parameters)
+            fit = self.problem.fitted(model, known, rounds=rounds, accuracy=1e-2)
+            return Rival(proposal.candidate, fit)
+
+        found = [
+            r
+            for r in self.pool.map(one, chosen)
+            if np.isfinite(r.fit.cost)
+            and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
+        ]
+        return sorted(found, key=judged_cost)
+
+    def settled(self, model: Model, known: Mapping[str, FloatArray] | None = None) -> Fit:
+        """
+        Fit with derivatives that are known already, then with those where the model now is.
+
+        :param model: where to begin.
+        :param known: derivatives by the unknown's label.
+        :return: the fit.
+        """
+        fit = self.problem.fitted(model, known, rounds=6, accuracy=1e-3)
+        if known is None and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
+            return fit
+        return self.problem.fitted(fit.model, rounds=4, accuracy=1e-3)
+
+    def pruned(self, start: Fit, state: Fit) -> Fit:
+        """
+        Drop causes that are none, and those that others have made superfluous.
+
+        :param start: without any cause.
+        :param state: with all of them.
+        :return: with those that are worth having.
+        """
+        state = self._renamed(state)
+        state = self._parted(state)
+        checked: set[Candidate] = set()
+        while True:
+            worths = self.problem.worths(state)
+            least = needed(self.problem, start, state)
+            doubtful = [
+                k
+                for k, cause in enumerate(state.model.causes)
+                if cause not in checked and worths[k] < CLEAR * least
+            ]
+            if not doubtful:
+                return state
+            k = min(doubtful, key=lambda k: worths[k])
+            known = self.problem.slopes(state)
+            smaller = self.problem.fitted(state.model.without(k), known, rounds=6, accuracy=1e-2)
+            if worthwhile(self.problem, start, smaller, state):
+                checked.add(state.model.causes[k])
+            else:
+                state = self._renamed(self.settled(smaller.model))
+
+    def _renamed(self, state: Fit) -> Fit:
+        """Give causes the names that their parameters deserve, and drop those that are none."""
+        model = state.model
+        taken = {(c.effect, c.place) for c in model.causes}
+        for k in reversed(range(len(model.causes))):
+            cause, values = model.causes[k], model.values(k)
+            if not degenerate(self.problem, cause, values):
+                continue
+            other = simpler(cause, values)
+            model = model.without(k)
+            if other is not None and (other[0].effect, other[0].place) not in taken:
+                model = model.joined(*other)
+        return state if model is state.model else self.settled(model)
+
+    def _parted(self, state: Fit) -> Fit:
+        """Keep of events that happen at once the one that is worth most: they are one."""
+        model = state.model
+        order = np.argsort(self.problem.worths(state))
+        gone: list[int] = []
+        for k in order.tolist():
+            own = model.causes[k], model.values(k)
+            others = [n for n in range(len(model.causes)) if n != k and n not in gone]
+            if any(at_once(own, (model.causes[n], model.values(n))) for n in others):
+                gone.append(k)
+        for k in sorted(gone, reverse=True):
+            model = model.without(k)
+        return self.settled(model, self.problem.slopes(state)) if gone else state

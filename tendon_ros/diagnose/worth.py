@@ -1,0 +1,84 @@
+"""What a cause must be worth: more than noise, and than the form of other laws, can explain."""
+
+from __future__ import annotations
+
+from tendon_ros.diagnose.form import form_power
+from tendon_ros.identify.fit import Fit, Problem
+
+#: part of the noise's power that a cause must explain, over all samples and over one channel
+LEAST, LEAST_IN_ONE = 0.03, 0.12
+#: times as much for an event: of all times and recordings, one always fits some of the noise
+ATTEMPTS = 4.0
+#: part of what is left that a cause must explain which is smaller than the form of other laws
+TAKES = 0.65
+#: times the form of other laws that an event must explain: it fits whatever they once get wrong
+TIMES_EVENT = 10.0
+
+
+def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
+    """
+    Return whether one more cause is believed.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param before: without this one.
+    :param after: with it.
+    :return: whether it explains more than noise and the form of the other laws can.
+    """
+    gain, in_one = gains(problem, before, after)
+    new = set(after.model.causes) - set(before.model.causes)
+    eager = all(c.instants for c in new)
+    least = ATTEMPTS if eager else 1.0
+    if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
+        return False
+    form = form_power(problem, start, before)
+    if eager:
+        return gain > TIMES_EVENT * form
+    # what the form of a law leaves has no other cause that would explain most of it
+    return gain > form or gain > TAKES * problem.structured(before.left)
+
+
+def open_question(problem: Problem, state: Fit) -> bool:
+    """
+    Return whether what is left has any structure that a further cause could explain.
+
+    :param problem: the data.
+    :param state: what holds already.
+    :return: whether, over all samples or in one channel.
+    """
+    whole, in_one = problem.structures(state.left)
+    return whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
+
+
+def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
+    """
+    Return how much power falls, in units of the noise's.
+
+    :param problem: the data.
+    :param before: the poorer fit.
+    :param after: the better one.
+    :return: over all samples, and in the channel where it falls most.
+    """
+    total: dict[str, list[float]] = {}
+    segments = problem.rollouts.segments
+    for (n, c, a), (_, _, b) in zip(
+        problem.groups(before.left), problem.groups(after.left), strict=True
+    ):
+        name = segments[n].measured[c].sensor.channel
+        entry = total.setdefault(name, [0.0, 0.0])
+        entry[0] += float(a @ a - b @ b)
+        entry[1] += len(a)
+    gain = (before.cost - after.cost) / max(len(before.left), 1)
+    return gain, max((e[0] / e[1] for e in total.values() if e[1]), default=0.0)
+
+
+def needed(problem: Problem, start: Fit, state: Fit) -> float:
+    """
+    Return the fall of squares that a cause beside all others must be worth.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with all of them.
+    :return: in noise deviations squared.
+    """
+    return len(state.left) * max(LEAST_IN_ONE, form_power(problem, start, state))
