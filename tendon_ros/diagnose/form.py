@@ -15,6 +15,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.starting import BEGUN, LASTS
+from tendon_ros.identify.worths import worths
 
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
@@ -43,9 +44,9 @@ def form_power(problem: Problem, start: Fit, state: Fit) -> float:
         for c in state.model.causes
     ]
     # what each is worth beside the others; what they share is shared out
-    worths = np.minimum(np.array(problem.worths(state)) / len(state.left), explained)
-    worths *= max(1.0, explained / max(float(worths.sum()), 1e-12))
-    return float(np.minimum(worths, explained) @ np.square(forms))
+    worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
+    worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
+    return float(np.minimum(worth, explained) @ np.square(forms))
 
 
 def tie(problem: Problem, best: Fit) -> float:

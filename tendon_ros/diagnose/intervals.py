@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -86,7 +85,7 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     found = []
     at = 0
     for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
-        coordinates = Coordinates(cause.parameters)
+        coordinates = cause.coordinates
         centre = coordinates.values(z)
         row: dict[str, tuple[float, float]] = {}
         for n, p in enumerate(cause.parameters):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.form import form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.worth import gains
 from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
@@ -88,23 +89,22 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
-def signs_of(problem: Problem, found: Found, k: int, gains: tuple[float, float]) -> Signs:
+def signs_of(problem: Problem, found: Found, k: int) -> Signs:
     """
     Return what speaks for one cause.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
-    :param gains: what leaving it out costs, over all samples and in one channel.
     :return: the signs.
     """
     final = found.final
     samples = len(final.left)
     left = problem.structured(final.left)
-    worth = max(gains[0], 1e-9)
+    worth, in_one = gains(problem, found.without[k], final)
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)
-    return Signs(worth, gains[1], left, explained, form)
+    return Signs(max(worth, 1e-9), in_one, left, explained, form)
 
 
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that

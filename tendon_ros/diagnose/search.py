@@ -17,7 +17,6 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import LEAST, open_question, worthwhile
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen
 from tendon_ros.identify.subset import Member, Subsets
@@ -114,7 +113,7 @@ class Search:
         model = state.model
         for member in members:
             candidate = member.proposal.candidate
-            model = model.joined(candidate, Coordinates(candidate.parameters).values(member.z))
+            model = model.joined(candidate, candidate.coordinates.values(member.z))
         # sizes and shapes lie along curved valleys: more of them, more steps
         fit = self.problem.fitted(model, self.problem.slopes(state), rounds=12, accuracy=1e-2)
         fit = self._steps.pruned(

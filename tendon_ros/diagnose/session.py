@@ -27,7 +27,6 @@ from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import KEPT, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.diagnose.worth import gains
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.model.instrument import Instrument
 
@@ -89,9 +88,7 @@ def diagnose(
         Weighed(
             cause,
             tuple(r.candidate for r in equals(search.problem, found, k)),
-            signs_of(
-                search.problem, found, k, gains(search.problem, found.without[k], found.final)
-            ),
+            signs_of(search.problem, found, k),
         )
         for k, cause in enumerate(found.final.model.causes)
     )

@@ -15,6 +15,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen
+from tendon_ros.identify.worths import worths
 
 FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]
@@ -153,16 +154,16 @@ class Steps:
         state = self._parted(state)
         checked: set[Candidate] = set()
         while True:
-            worths = self.problem.worths(state)
+            worth = worths(self.problem, state)
             least = needed(self.problem, start, state)
             doubtful = [
                 k
                 for k, cause in enumerate(state.model.causes)
-                if cause not in checked and worths[k] < CLEAR * least
+                if cause not in checked and worth[k] < CLEAR * least
             ]
             if not doubtful:
                 return state
-            k = min(doubtful, key=lambda k: worths[k])
+            k = min(doubtful, key=lambda k: worth[k])
             known = self.problem.slopes(state)
             smaller = self.problem.fitted(state.model.without(k), known, rounds=6, accuracy=1e-2)
             if worthwhile(self.problem, start, smaller, state):
@@ -187,7 +188,7 @@ class Steps:
     def _parted(self, state: Fit) -> Fit:
         """Keep of events that happen at once the one that is worth most: they are one."""
         model = state.model
-        order = np.argsort(self.problem.worths(state))
+        order = np.argsort(worths(self.problem, state))
         gone: list[int] = []
         for k in order.tolist():
             own = model.causes[k], model.values(k)

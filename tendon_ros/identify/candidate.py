@@ -9,6 +9,7 @@ from itertools import product
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import catalogue, find
+from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
 
@@ -46,6 +47,11 @@ class Candidate:
     def one_sided(self) -> bool:
         """Whether its sizes can only grow from their neutral values."""
         return all(p.low >= p.neutral for p in self.parameters if not p.is_shape)
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """The unknowns of a fit of it."""
+        return Coordinates(self.parameters)
 
     def use(self, values: Values) -> EffectUse:
         """

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, Values
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
@@ -125,7 +124,7 @@ class Trial:
         kept = np.array([(t.effect, t.place) != at for t in self._tolerances], dtype=np.bool_)
         allowed = [t for t, keep in zip(self._tolerances, kept, strict=True) if keep]
         by_tolerance = self._by_tolerance[kept]
-        coordinates = Coordinates(candidate.parameters)
+        coordinates = candidate.coordinates
         axes = coordinates.axes
         ends = np.array([a.ends for a in (*axes, *(t.axis for t in allowed))]).reshape(-1, 2)
         free = len(axes)
@@ -159,7 +158,7 @@ class Trial:
     ) -> FloatArray:
         """Return what the channels say at a place of a rival's parameters and tolerances."""
         free = len(candidate.parameters)
-        values = Coordinates(candidate.parameters).values(x[:free].tolist())
+        values = candidate.coordinates.values(x[:free].tolist())
         moved = [_moved(t, float(z)) for t, z in zip(allowed, x[free:], strict=True) if z != 0.0]
         return self._predicted([EffectUse(candidate.effect, candidate.place, values), *moved])
 

@@ -17,7 +17,6 @@ from tendon_ros.effects import find
 from tendon_ros.effects.presliding_friction import BENDING
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
@@ -49,7 +48,7 @@ class Model:
         :param k: which.
         :return: values by name, SI units.
         """
-        return Coordinates(self.causes[k].parameters).values(self.z[k])
+        return self.causes[k].coordinates.values(self.z[k])
 
     def without(self, k: int) -> Model:
         """
@@ -76,7 +75,7 @@ class Model:
         :return: the larger model.
         """
         causes = (*self.causes, cause)
-        row = Coordinates(cause.parameters).place(values)
+        row = cause.coordinates.place(values)
         bristle = {place: self.bristle.get(place, 0.0) for place in _dry_places(causes)}
         return Model(causes, (*self.z, row), bristle, self.moved)
 

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.axis import Axis
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.explanation import BRISTLE, Model
 from tendon_ros.identify.residuals import Residuals
 
@@ -68,7 +67,7 @@ class Problem(Residuals):
 
     def axes(self, model: Model) -> list[Axis]:
         """Return the axes of all unknowns, in their order."""
-        own = [axis for c in model.causes for axis in Coordinates(c.parameters).axes]
+        own = [axis for c in model.causes for axis in c.coordinates.axes]
         return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
 
     def prior(self, model: Model) -> FloatArray:
@@ -94,10 +93,8 @@ class Problem(Residuals):
         :return: shape (unknowns,).
         """
         x = self.pack(fit.model)
-        low, high = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2).T
-        pull = fit.slope.T @ fit.left + self.prior(fit.model) * x
-        held: NDArray[np.bool_] = ((x <= low) & (pull > 0.0)) | ((x >= high) & (pull < 0.0))
-        return ~held
+        bounds = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2)
+        return _free(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
 
     def labels(self, model: Model) -> list[str]:
         """Return a name for each unknown that holds in any model which has it."""
@@ -236,10 +233,7 @@ class Problem(Residuals):
             for _ in range(6):
                 scale = np.diag(np.diag(normal)) + 1e-9 * np.eye(len(x))
                 # unknowns pressed against a bound stay there
-                free = ~still & ~(
-                    ((x <= bounds[:, 0]) & (gradient > 0.0))
-                    | ((x >= bounds[:, 1]) & (gradient < 0.0))
-                )
+                free = ~still & _free(x, bounds, gradient)
                 step = np.zeros(len(x))
                 step[free] = np.linalg.solve(
                     (normal + damping * scale)[np.ix_(free, free)], -gradient[free]
@@ -274,45 +268,22 @@ class Problem(Residuals):
             if label not in owned
         }
 
-    def covariance(self, fit: Fit) -> FloatArray:
+    def covariance(self, fit: Fit, free: NDArray[np.bool_] | None = None) -> FloatArray:
         """
         Return how well a fit knows its unknowns, were noise white and independent.
 
         :param fit: the fit.
+        :param free: which unknowns the data may move; all where None.
         :return: shape (unknowns, unknowns), on their axes.
         """
-        prior = self.prior(fit.model)
-        normal = fit.slope.T @ fit.slope + np.diag(prior) + 1e-9 * np.eye(len(prior))
+        slope = fit.slope if free is None else fit.slope * free
+        normal = slope.T @ slope + np.diag(self.prior(fit.model) + 1e-9)
         return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
 
-    def worths(self, fit: Fit) -> list[float]:
-        """
-        Return by how much squares would grow, to first order, were each cause left out.
 
-        :param fit: the fit.
-        :return: one for each cause; infinite for one whose size is no number of its own.
-        """
-        slope = fit.slope * self.free(fit)
-        prior = self.prior(fit.model) + 1e-9
-        products = slope.T @ slope + np.diag(prior)
-        x = self.pack(fit.model)
-        found = []
-        at = 0
-        for cause in fit.model.causes:
-            coordinates = Coordinates(cause.parameters)
-            gone = np.array([at + n for n in coordinates.sizes], dtype=np.int64)
-            stays = np.setdiff1d(
-                np.arange(len(x)), np.arange(at, at + len(cause.parameters)), assume_unique=True
-            )
-            at += len(cause.parameters)
-            if not gone.size:
-                found.append(math.inf)
-                continue
-            step = -x[gone]
-            # what stays makes up for it as far as it can
-            across = products[np.ix_(stays, gone)] @ step
-            made_up = np.linalg.solve(products[np.ix_(stays, stays)], across)
-            here = slope[:, gone] @ step
-            grown = float(here @ here) + 2.0 * float(here @ fit.left)
-            found.append(max(0.0, grown - float(across @ made_up)))
-        return found
+def _free(x: FloatArray, bounds: FloatArray, gradient: FloatArray) -> NDArray[np.bool_]:
+    """Return which unknowns are not pressed against a bound: those that are stay there."""
+    held: NDArray[np.bool_] = ((x <= bounds[:, 0]) & (gradient > 0.0)) | (
+        (x >= bounds[:, 1]) & (gradient < 0.0)
+    )
+    return ~held

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.beside import Beside
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.starting import Starting
 
@@ -46,7 +45,7 @@ class Proposal:
     @property
     def values(self) -> dict[str, float]:
         """The parameters, SI units."""
-        return Coordinates(self.candidate.parameters).values(self.z)
+        return self.candidate.coordinates.values(self.z)
 
     @property
     def steps(self) -> list[float]:
@@ -62,7 +61,7 @@ class Proposal:
         """
         z = list(self.z)
         for n, step in zip(self.sizes, steps, strict=True):
-            low, high = Coordinates(self.candidate.parameters).axes[n].ends
+            low, high = self.candidate.coordinates.axes[n].ends
             z[n] = float(min(max(self.base + step, low), high))
         return tuple(z)
 
@@ -82,8 +81,7 @@ class Screen:
         self._free = problem.free(fit)
         # what a bound holds back imitates nothing
         self._slope = fit.slope * self._free
-        normal = self._slope.T @ self._slope + np.diag(problem.prior(fit.model) + 1e-9)
-        self._inverse = np.linalg.pinv(normal, hermitian=True)
+        self._inverse = problem.covariance(fit, self._free)
         self._pull = self._slope.T @ fit.left
         tolerances = problem.tolerances
         first = fit.slope.shape[1] - len(tolerances)
@@ -99,7 +97,7 @@ class Screen:
         :param candidate: the candidate.
         :return: the proposals, best first; empty where it changes nothing that was measured.
         """
-        coordinates = Coordinates(candidate.parameters)
+        coordinates = candidate.coordinates
         found: dict[Proposal, None] = {}
         for one, values in self._starting.of(candidate):
             z = coordinates.place(values)
@@ -169,12 +167,12 @@ class Screen:
         if j is None:
             return 0.0
         n = j - self.fit.slope.shape[1]
-        [axis] = Coordinates(candidate.parameters).axes
+        [axis] = candidate.coordinates.axes
         return axis.place(self.problem.tolerances[n].axis.value(float(self.fit.model.moved[n])))
 
     def _changes(self, proposal: Proposal, at: Sequence[float]) -> FloatArray | None:
         """Return what each size changes by one, taken at a size; shape (samples, sizes or 1)."""
-        coordinates = Coordinates(proposal.candidate.parameters)
+        coordinates = proposal.candidate.coordinates
         steps = np.zeros(len(proposal.sizes))
         found: list[FloatArray] = []
         before = self.fit.left
@@ -202,7 +200,7 @@ class Screen:
 
     def _reach(self, proposal: Proposal) -> FloatArray:
         """Return how far each size may go down and up, shape (2, sizes)."""
-        axes = Coordinates(proposal.candidate.parameters).axes
+        axes = proposal.candidate.coordinates.axes
         ends = np.array([axes[n].ends for n in proposal.sizes]).reshape(-1, 2).T
         reach: FloatArray = np.clip(ends - proposal.base, -FARTHEST, FARTHEST)
         return reach

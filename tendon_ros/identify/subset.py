@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.coordinates import Coordinates
 from tendon_ros.identify.screening import Proposal
 
 FloatArray = NDArray[np.float64]
@@ -135,9 +134,7 @@ class Subsets:
 
 def _least(proposal: Proposal) -> list[float]:
     """Return the smallest sizes that a member may have."""
-    ends = [
-        axis.ends[0] - proposal.base for axis in Coordinates(proposal.candidate.parameters).axes
-    ]
+    ends = [axis.ends[0] - proposal.base for axis in proposal.candidate.coordinates.axes]
     return [
         SMALLEST * step if ends[n] > -1e-9 else ends[n]
         for n, step in zip(proposal.sizes, proposal.steps, strict=True)
