@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.places import Places
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Where
-from tendon_ros.diagnose.where import Places, regimes
-from tendon_ros.identify.fit import Problem
+from tendon_ros.diagnose.where import regimes
+from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
@@ -29,37 +30,31 @@ class Whereabouts:
 
 
 def whereabouts(
-    ready: Prepared, found: Found, probabilities: Sequence[float], left: float
+    ready: Prepared, found: Found, accepted: Sequence[int], believed: Fit, left: float
 ) -> Whereabouts:
     """
     Share the gap out among places and regimes.
 
     :param ready: the problem.
     :param found: what the search has found.
-    :param probabilities: of the causes, in their order.
+    :param accepted: which of its causes are believed.
+    :param believed: the fit with these alone: a doubted cause says nothing of the place.
     :param left: structured misfit that stays, in noise power per sample.
     :return: the shares.
     """
     problem = ready.problem
-    final = found.final
     texts = _regimes_of(problem)
     powers: dict[tuple[str, str], float] = {}
-    explained = max(0.0, (found.start.cost - final.cost))
-    worths = [max(w.cost - final.cost, 1e-9) for w in found.without]
-    for k, cause in enumerate(final.model.causes):
-        gain = np.maximum(found.without[k].left ** 2 - final.left**2, 0.0)
-        part = explained * worths[k] / sum(worths)
-        believed = probabilities[k]
-        _spread(powers, cause.place, gain, texts, believed * part)
-        if believed < 0.5:
-            # a doubtful cause says little of the place: ask the places themselves
-            for place, taken in Places(problem, found.without[k]).shares(2):
-                share = (1.0 - believed) * part * taken.sum() / max(gain.sum(), taken.sum(), 1e-9)
-                _spread(powers, place, np.maximum(taken, 0.0), texts, share)
+    explained = max(0.0, found.start.cost - believed.cost)
+    worths = {k: max(found.without[k].cost - found.final.cost, 1e-9) for k in accepted}
+    for k in accepted:
+        gain = np.maximum(found.without[k].left ** 2 - found.final.left**2, 0.0)
+        part = explained * worths[k] / sum(worths.values())
+        _spread(powers, found.final.model.causes[k].place, gain, texts, part)
     rest: dict[tuple[str, str], float] = {}
-    stays = left * len(final.left)
+    stays = left * len(believed.left)
     if left > 0.0:
-        shares = Places(problem, final).shares()
+        shares = Places(problem, believed).shares()
         total = sum(float(t.sum()) for _, t in shares) + 1e-9
         for place, taken in shares:
             _spread(rest, place, np.maximum(taken, 0.0), texts, stays * float(taken.sum()) / total)
@@ -104,7 +99,8 @@ def _spread(
 
 def _regimes_of(problem: Problem) -> NDArray[np.str_]:
     """Return the regime of each sample."""
-    forces = problem.rollouts.contact_forces()
+    states = problem.rollouts.states([()] * len(problem.rollouts.segments))
+    forces = [np.abs(s.contact_force).max(axis=1, initial=0.0) for s in states]
     texts = [
         regimes(segment, force)
         for segment, force in zip(problem.rollouts.segments, forces, strict=True)

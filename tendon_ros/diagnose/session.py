@@ -105,7 +105,7 @@ def diagnose(
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
     form = form_power(search.problem, found.start, believed)
     causes = causes_of(heard, found, final, [weighed[k] for k in accepted])
-    places = whereabouts(ready, found, chances, left)
+    places = whereabouts(ready, found, accepted, believed, left)
     beyond = left_over(left, form)
     channels = gaps(heard.held, final.model)
     repaired = patched(heard.problem, final.model, instrument)

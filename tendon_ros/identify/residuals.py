@@ -134,6 +134,19 @@ class Residuals:
         ]
         return np.concatenate(parts)
 
+    def sampled(self, rows: Sequence[FloatArray]) -> FloatArray:
+        """
+        Return something known of every bin, for each sample that counts.
+
+        :param rows: one array (bins,) a segment.
+        :return: shape (samples,).
+        """
+        parts = [
+            np.broadcast_to(row, mask.shape)[mask]
+            for row, mask in zip(rows, self._masks, strict=True)
+        ]
+        return np.concatenate(parts)
+
     def clusters(self, length: float) -> NDArray[np.int64]:
         """
         Return which stretch of time each sample belongs to.

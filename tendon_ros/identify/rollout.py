@@ -19,6 +19,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
+from tendon_ros.model.runner import Rows
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict
 
@@ -113,57 +114,43 @@ class Rollouts:
 
         :return: angles [rad] by pulley.
         """
-        segment, base = self.segments[0], self._base[0]
-        rows = predict(
-            base,
-            true_motion(base, modified(base), segment),
+        base = self._base[0]
+        last = self._rolled(0, ()).angle[-1]
+        return {name: float(last[base.index(name)]) for name in base.inner}
+
+    def states(self, uses: Sequence[Sequence[EffectUse]]) -> list[Rows]:
+        """
+        Return what the model does inside, bin by bin.
+
+        :param uses: effects in force beside the instrument's own, for each segment.
+        :return: one a segment.
+        :raises SimulationError: where the model diverges.
+        """
+        return [self._rolled(n, own) for n, own in enumerate(uses)]
+
+    def _rolled(self, n: int, uses: Sequence[EffectUse]) -> Rows:
+        segment = self.segments[n]
+        base = self._base[n]
+        instrument = replace(base, effects=(*base.effects, *uses))
+        return predict(
+            instrument,
+            true_motion(instrument, modified(instrument), segment),
             segment.prescribed,
             len(segment.time) - 1,
             pushed=segment.pushed,
             tolerance=TOLERANCE,
+            pose=segment.pose,
         )
-        last = rows.angle[-1]
-        return {name: float(last[base.index(name)]) for name in base.inner}
-
-    def contact_forces(self) -> list[FloatArray]:
-        """Return the largest predicted contact force of each segment's bins, shape (bins,)."""
-        found = []
-        for n, segment in enumerate(self.segments):
-            base = self._base[n]
-            rows = predict(
-                base,
-                true_motion(base, modified(base), segment),
-                segment.prescribed,
-                len(segment.time) - 1,
-                pushed=segment.pushed,
-                tolerance=TOLERANCE,
-                pose=segment.pose,
-            )
-            force = np.abs(rows.contact_force)
-            found.append(force.max(axis=1) if force.size else np.zeros(len(rows)))
-        return found
 
     def _one(self, task: tuple[int, Sequence[EffectUse]]) -> FloatArray:
         n, uses = task
         segment = self.segments[n]
-        base = self._base[n]
-        instrument = replace(base, effects=(*base.effects, *uses))
-        numbers = modified(instrument)
-        bins = len(segment.time)
         try:
-            rows = predict(
-                instrument,
-                true_motion(instrument, numbers, segment),
-                segment.prescribed,
-                bins - 1,
-                pushed=segment.pushed,
-                tolerance=TOLERANCE,
-                pose=segment.pose,
-            )
+            rows = self._rolled(n, uses)
         except (SimulationError, EffectError):
-            return np.full((len(segment.measured), bins), np.inf)
+            return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
-        return _as_reported(instrument, numbers, segment, found, self._usual)
+        return _as_reported(rows.instrument, segment, found, self._usual)
 
 
 def modified(instrument: Instrument) -> Numbers:
@@ -214,7 +201,6 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
 
 def _as_reported(
     instrument: Instrument,
-    numbers: Numbers,
     segment: Segment,
     found: FloatArray,
     usual: Mapping[str, float],
@@ -225,6 +211,7 @@ def _as_reported(
     A motor whose torque is cut off reports a torque that no motion tells; there the measured
     torque stands for the prediction, less what the motion asks beyond the limit.
     """
+    numbers = modified(instrument)
     names = list(instrument.motor_names)
     for row, measured in enumerate(segment.measured):
         if measured.sensor.kind != 'motor_torque':

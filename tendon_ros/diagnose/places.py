@@ -1,0 +1,211 @@
+"""
+Which place is to blame for what no cause explains.
+
+Each place is asked what an arbitrary torque, stretch or reading error there could explain: the
+directions in which channels answer together differ from place to place, whatever the law behind
+it. Where directions are alike, the law decides after all: an error of a place is a function of
+what that place feels, its angle and direction, its torque or its force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.model.instrument import contact_place, Instrument
+from tendon_ros.model.runner import Rows
+
+FloatArray = NDArray[np.float64]
+
+PIECE = 0.12  # [s] over which an unknown cause is taken as constant
+ALIKE = 0.75  # part of the best place's gain from which on another may be the one
+LEVELS = 8  # of what a place feels
+
+
+class Places:
+    """
+    Asks each place of an instrument what it could explain.
+
+    :param problem: the bins to judge by.
+    :param fit: the state.
+    """
+
+    def __init__(self, problem: Problem, fit: Fit) -> None:
+        self._problem = problem
+        self._left = problem.left(fit.model)
+        self._piece = problem.clusters(PIECE)
+        self._count = int(self._piece.max()) + 1
+        self._directions = {
+            place: direction
+            for place, direction in self._all(fit)
+            if np.abs(direction).max(initial=0.0) > 1e-9
+        }
+        self._felt = _felt(problem, problem.rollouts.states(problem.uses(fit.model)))
+        # what a wrong law has bent the file's numbers to, they give back beside the right place
+        moving = len(problem.tolerances)
+        self._slope = fit.slope[:, fit.slope.shape[1] - moving :]
+        self._prior = problem.prior(fit.model)[fit.slope.shape[1] - moving :]
+        self._moved = fit.model.moved
+        self._ends = np.array([t.axis.ends for t in problem.tolerances]).reshape(-1, 2)
+
+    def _all(self, fit: Fit) -> list[tuple[str, FloatArray]]:
+        problem = self._problem
+        found = []
+        for place, candidate, values in _probes(problem.rollouts.instrument):
+            change = problem.left(fit.model.joined(candidate, values)) - self._left
+            if np.isfinite(change).all():
+                found.append((place, change))
+        readings: dict[str, FloatArray] = {}
+        for segment, channel, span in problem.spans():
+            sensor = problem.rollouts.segments[segment].measured[channel].sensor
+            place = f'motor_{sensor.of}' if sensor.kind == 'motor_torque' else sensor.name
+            readings.setdefault(place, np.zeros_like(self._left))[span] = 1.0
+        return [*found, *readings.items()]
+
+    def shares(self, most: int = 4) -> list[tuple[str, FloatArray]]:
+        """
+        Return what the places explain, the best first, each of what the ones before leave.
+
+        :param most: so many places.
+        :return: place, and the power that it takes from each sample, shape (samples,).
+        """
+        left, moved = self._left, self._moved
+        rest = dict(self._directions)
+        found: list[tuple[str, FloatArray]] = []
+        while rest and len(found) < most:
+            trials = {place: self._imitated(left, moved, d) for place, d in rest.items()}
+            gains = {place: float(left @ left - t @ t) for place, (t, _) in trials.items()}
+            least = ALIKE * max(gains.values())
+            if least <= 0.0:
+                break
+            # what a law of its own leaves, against what even any size at any time leaves
+            odds = {
+                place: self._lawful(place, left, moved) / float(t @ t)
+                for place, (t, _) in trials.items()
+                if gains[place] >= least
+            }
+            best = max(odds, key=lambda place: odds[place])
+            kept, moved = trials[best]
+            found.append((best, left**2 - kept**2))
+            left = kept
+            del rest[best]
+        return found
+
+    def _imitated(
+        self, left: FloatArray, moved: FloatArray, direction: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return what a size that is constant in each piece leaves, and where the numbers go."""
+        square = self._summed(direction**2)
+        by_piece = 1.0 / np.maximum(square, 1e-12 + 1e-6 * square.max())
+
+        def cleared(vector: FloatArray) -> FloatArray:
+            size = self._summed(vector * direction) * by_piece
+            return vector - size[self._piece] * direction
+
+        slope = np.array([cleared(column) for column in self._slope.T]).reshape(-1, len(left)).T
+        normal = slope.T @ slope + np.diag(self._prior + 1e-9)
+        wished = moved - np.linalg.solve(normal, slope.T @ cleared(left) + self._prior * moved)
+        after = np.clip(wished, self._ends[:, 0], self._ends[:, 1])
+        left = left + self._slope @ (after - moved)
+        pull = self._summed(left * direction)
+        size = pull * by_piece
+        # pieces in which noise alone would give as much are left alone
+        size[pull**2 < 4.0 * square] = 0.0
+        return left - size[self._piece] * direction, after
+
+    def _summed(self, samples: FloatArray) -> FloatArray:
+        """Return sums over pieces."""
+        return np.bincount(self._piece, weights=samples, minlength=self._count)
+
+    def _lawful(self, place: str, left: FloatArray, moved: FloatArray) -> float:
+        """Return how much a function of what the place feels explains, the numbers moving."""
+        design = self._felt[place] * self._directions[place][:, None]
+        scale = np.sqrt(np.maximum(np.einsum('ij,ij->j', design, design), 1e-300))
+        design = np.hstack([design / scale, self._slope])
+        prior = np.concatenate([np.full(len(scale), 1e-9), self._prior])
+        pull = design.T @ left
+        pull[len(scale) :] += self._prior * moved
+        return float(pull @ np.linalg.solve(design.T @ design + np.diag(prior), pull))
+
+
+def _probes(instrument: Instrument) -> list[tuple[str, Candidate, dict[str, float]]]:
+    """Return a small disturbance at each place that is not a sensor of what is predicted."""
+    found: list[tuple[str, Candidate, dict[str, float]]] = []
+    for pulley in instrument.pulleys:
+        place = f'pulley_{pulley.name}'
+        values = {'torque': 0.02, 'start': 0.0, 'duration': 1e5}
+        found.append((place, Candidate('disturbance', place), values))
+    for loop in instrument.loops:
+        place = f'cable_{loop.name}'
+        found.append((place, Candidate('cable_slip', place), {'jump': 1e-5, 'time': 0.0}))
+    for coupling in instrument.couplings:
+        place = f'coupling_{coupling.name}'
+        found.append((place, Candidate('cable_slip', place), {'jump': 1e-3, 'time': 0.0}))
+    for contact in instrument.contacts:
+        place = contact_place(instrument, contact)
+        found.append((place, Candidate('contact_position', place), {'angle': 1e-4}))
+    for sensor in instrument.sensors:
+        if sensor.kind == 'angle' and sensor.of in instrument.driven:
+            found.append((sensor.name, Candidate('encoder_offset', sensor.name), {'angle': 1e-4}))
+    return found
+
+
+def _felt(problem: Problem, states: Sequence[Rows]) -> dict[str, FloatArray]:
+    """Return functions of what each place feels, shape (samples, functions), by place."""
+    instrument = problem.rollouts.instrument
+    found: dict[str, FloatArray] = {}
+
+    def keep(place: str, rows: Sequence[Sequence[FloatArray]]) -> None:
+        """Keep functions, given as one list a segment, on the samples."""
+        found[place] = np.stack(
+            [problem.sampled([functions[k] for functions in rows]) for k in range(len(rows[0]))],
+            axis=1,
+        )
+
+    for i, pulley in enumerate(instrument.pulleys):
+        angle, speed = [s.angle[:, i] for s in states], [s.velocity[:, i] for s in states]
+        keep(f'pulley_{pulley.name}', _levels(angle, speed))
+        keep(f'encoder_{pulley.name}', _levels(angle, None))
+    names = [*(f'cable_{x.name}' for x in instrument.loops)]
+    names += [f'coupling_{x.name}' for x in instrument.couplings]
+    for i, place in enumerate(names):
+        keep(place, _rising([s.loop_force[:, i] for s in states]))
+    for j, motor in enumerate(instrument.motor_names):
+        rows = _rising([s.effort[:, j] for s in states])
+        others = [s.effort for s in states]
+        extra = [[np.gradient(e[:, j]), *np.delete(e, j, axis=1).T] for e in others]
+        keep(f'motor_{motor}', [[*a, *b] for a, b in zip(rows, extra, strict=True)])
+    for k, contact in enumerate(instrument.contacts):
+        rows = _rising([s.contact_force[:, k] for s in states])
+        keep(contact_place(instrument, contact), rows)
+        for sensor in instrument.sensors:
+            if sensor.kind in ('contact_force', 'contact_torque') and sensor.of == contact.name:
+                keep(sensor.name, rows)
+    return found
+
+
+def _rising(values: Sequence[FloatArray]) -> list[list[FloatArray]]:
+    """Return levels of a force, those in which it rises apart from those in which it falls."""
+    return _levels(values, [np.gradient(v) for v in values])
+
+
+def _levels(
+    values: Sequence[FloatArray], ways: Sequence[FloatArray] | None
+) -> list[list[FloatArray]]:
+    """Return indicators of levels, by direction where there is one, for each segment."""
+    every = np.concatenate(values)
+    edges = np.linspace(every.min(), every.max() + 1e-12, LEVELS + 1)[1:-1]
+    found = []
+    for n, value in enumerate(values):
+        level = np.searchsorted(edges, value)
+        row = [(level == k).astype(np.float64) for k in range(LEVELS)]
+        if ways is not None:
+            up = (ways[n] > 0.0).astype(np.float64)
+            row = [r * way for r in row for way in (up, 1.0 - up)]
+            row.append(ways[n])
+        found.append(row)
+    return found
