@@ -101,9 +101,11 @@ def _regimes_of(problem: Problem) -> NDArray[np.str_]:
     """Return the regime of each sample."""
     states = problem.rollouts.states([()] * len(problem.rollouts.segments))
     forces = [np.abs(s.contact_force).max(axis=1, initial=0.0) for s in states]
+    instrument = problem.rollouts.instrument
+    driven = [instrument.index(name) for name in instrument.driven]
     texts = [
-        regimes(segment, force)
-        for segment, force in zip(problem.rollouts.segments, forces, strict=True)
+        regimes(segment, state.velocity[:, driven].T, force)
+        for segment, state, force in zip(problem.rollouts.segments, states, forces, strict=True)
     ]
     rows = [texts[n][problem.masks[n][c]] for n, c, _ in problem.spans()]
     return np.concatenate(rows)

@@ -50,6 +50,7 @@ def patched(
             own = f'{old.name}_{loop.name}'
             curves[own] = Curve(own, old.elongation, tuple(scale * t for t in old.tension))
         tight = loop.pretension * moved.get((place, 'pretension'), 1.0)
+        curves[own] = _reaching(curves[own], tight)
         loops.append(replace(loop, curve=own, pretension=tight))
     contacts = tuple(
         replace(
@@ -80,3 +81,12 @@ def patched(
         contacts=contacts,
         effects=(*instrument.effects, *gains, *accepted, *bristles(model)),
     )
+
+
+def _reaching(curve: Curve, tension: float) -> Curve:
+    """Return a curve that goes on straight, if need be, until well beyond a tension."""
+    if tension < curve.tension[-1]:
+        return curve
+    (e, f), (t, u) = curve.elongation[-2:], curve.tension[-2:]
+    further = f + (2.0 * tension - u) * (f - e) / (u - t)
+    return Curve(curve.name, (*curve.elongation, further), (*curve.tension, 2.0 * tension))

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.instrument import contact_place, Instrument
 from tendon_ros.model.runner import Rows
@@ -151,6 +152,10 @@ def _probes(instrument: Instrument) -> list[tuple[str, Candidate, dict[str, floa
     for sensor in instrument.sensors:
         if sensor.kind == 'angle' and sensor.of in instrument.driven:
             found.append((sensor.name, Candidate('encoder_offset', sensor.name), {'angle': 1e-4}))
+    for drive in drives(instrument):
+        if drive.by_torque:
+            place = f'motor_{drive.motor}'
+            found.append((place, Candidate('torque_bias', place), {'torque': 0.02}))
     return found
 
 
@@ -180,11 +185,13 @@ def _felt(problem: Problem, states: Sequence[Rows]) -> dict[str, FloatArray]:
         extra = [[np.gradient(e[:, j]), *np.delete(e, j, axis=1).T] for e in others]
         keep(f'motor_{motor}', [[*a, *b] for a, b in zip(rows, extra, strict=True)])
     for k, contact in enumerate(instrument.contacts):
-        rows = _rising([s.contact_force[:, k] for s in states])
-        keep(contact_place(instrument, contact), rows)
-        for sensor in instrument.sensors:
-            if sensor.kind in ('contact_force', 'contact_torque') and sensor.of == contact.name:
-                keep(sensor.name, rows)
+        keep(
+            contact_place(instrument, contact),
+            _rising([s.contact_force[:, k] for s in states]),
+        )
+    for q, sensor in enumerate(instrument.sensors):
+        if sensor.name not in found:
+            keep(sensor.name, _rising([s.reading[:, q] for s in states]))
     return found
 
 

@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
+from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.residuals import NEIGHBOURS
+from tendon_ros.identify.residuals import neighbours
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import (
     bin_length,
     loaded,
     Measured,
-    motor_channels,
     reading_error,
     Segment,
     segment_of,
@@ -43,6 +43,7 @@ BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument rememb
 NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
 FELT = 0.8
+QUIETER = 2.0  # times less noise that call for another look
 KEPT = 4  # of so many blocks in a row one fewer is fitted
 WHOLE = 6  # recordings from which on whole ones are held out
 
@@ -69,7 +70,7 @@ class Prepared:
         segments = [
             segment.with_noise(
                 [
-                    np.minimum(m.noise, np.hypot(_heard(m, row), by_counts))
+                    np.minimum(m.noise, np.hypot(_heard(m, row, segment.period), by_counts))
                     for m, row, by_counts in zip(segment.measured, rows, counts, strict=True)
                 ]
             )
@@ -78,6 +79,21 @@ class Prepared:
             )
         ]
         return _problems(rollouts.instrument, segments, self.counts, self.shift)
+
+    def quieter(self, other: Prepared) -> bool:
+        """
+        Return whether a channel is much less noisy here.
+
+        :param other: the same recordings.
+        :return: whether what was taken for noise there was not.
+        """
+        return any(
+            np.median(b.noise) > QUIETER * np.median(a.noise)
+            for mine, its in zip(
+                self.whole.rollouts.segments, other.whole.rollouts.segments, strict=True
+            )
+            for a, b in zip(mine.measured, its.measured, strict=True)
+        )
 
     def moved(self, shift: int) -> Prepared:
         """
@@ -182,6 +198,8 @@ def _misfits(instrument: Instrument, segment: Segment) -> dict[str, float]:
 
 def _posed(instrument: Instrument, segment: Segment) -> Segment:
     """Return a segment with the pose in which the model rests before the motion begins."""
+    if set(segment.pushed) & set(instrument.driven):
+        return segment  # a known torque leads to no rest
     first = segment.motion.value[:, 0]
     resting = replace(
         segment,
@@ -215,16 +233,17 @@ def _with_noise(
         for row, other in zip(predicted, disturbed, strict=True)
     )
     noise = [
-        np.hypot(_heard(measured, row), by_counts)
+        np.hypot(_heard(measured, row, segment.period), by_counts)
         for measured, row, by_counts in zip(segment.measured, predicted, counts, strict=True)
     ]
     return segment.with_noise(noise), counts
 
 
-def _heard(measured: Measured, predicted: FloatArray) -> float:
+def _heard(measured: Measured, predicted: FloatArray, period: float) -> float:
     """Return the noise of a channel: what bins that are near each other do not share."""
     left = measured.value - predicted
-    step = left[NEIGHBOURS:] - left[:-NEIGHBOURS]
+    apart = neighbours(period)
+    step = left[apart:] - left[:-apart]
     step = step[np.isfinite(step)]
     found = 1.4826 * float(np.median(np.abs(step))) / np.sqrt(2.0) if step.size else 0.0
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
@@ -236,7 +255,7 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
     """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
     rows = []
     sensors = {s.channel: s for s in instrument.sensors}
-    for row, name in enumerate(motor_channels(instrument)):
+    for row, name in enumerate(encoder_channels(instrument)):
         motion = segment.motion.value[row]
         error = reading_error(recording[name], sensors[name])
         count = error * np.sqrt(12.0)
@@ -250,7 +269,7 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
             motion,
         )
         counted = count * np.round(fine / count + 0.5) - 0.5 * count
-        again = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error)
+        again = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
         rows.append(
             np.interp(
                 segment.period * np.arange(len(motion)), sampling * np.arange(len(again)), again

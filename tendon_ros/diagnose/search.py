@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.form import at_once
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
+from tendon_ros.diagnose.steps import best_of, CORRECTED, judged_cost, Report, Steps
 from tendon_ros.diagnose.worth import LEAST, open_question, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
@@ -24,6 +26,8 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST = 5  # causes
 ROUNDS = 4  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
+#: deviations that a guess has to have moved to be suspected of standing for a cause
+ASTRAY = 0.5
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
 
@@ -83,7 +87,9 @@ class Search:
                 if state is not found.start:
                     screen = Screen(self.problem, state)
                     proposals = self._steps.screened(screen)
-                grown = self._grown(found, screen, proposals)
+                grown = self._grown(found, state, screen, proposals)
+                if turn == 0:
+                    grown = self._better(grown, self._from_the_file(found))
                 turn += 1
             if grown is not None:
                 state = grown
@@ -101,7 +107,39 @@ class Search:
         self._ordered(found)
         return found
 
-    def _grown(self, found: Found, screen: Screen, proposals: Sequence[Proposal]) -> Fit | None:
+    @staticmethod
+    def _better(one: Fit | None, other: Fit | None) -> Fit | None:
+        """Return the one of two states that leaves less, if there is one."""
+        states = [fit for fit in (one, other) if fit is not None]
+        return min(states, key=lambda fit: fit.cost, default=None)
+
+    def _from_the_file(self, found: Found) -> Fit | None:
+        """
+        Return causes that are found beside the numbers of the file as they are.
+
+        Guesses that had to do without the causes may end far off, where no cause helps any more.
+        """
+        guesses = [t.guessed for t in self.problem.tolerances]
+        if not np.abs(found.start.model.moved[guesses]).max(initial=0.0) > ASTRAY:
+            return None
+        file = self.problem.fitted(self.problem.empty, rounds=0)
+        screen = Screen(self.problem, file)
+        proposals = self._steps.screened(screen)
+        grown = self._grown(found, found.start, screen, proposals)
+        best = best_of(proposals)
+        rivals = self._steps.fitted(file, best, 0.0)
+        # what is there or not shows only once the guesses have followed
+        either = [p for p in best if not p.sizes]
+        rivals += self._steps.fitted(file, either, 0.0) if either else []
+        for rival in sorted(rivals, key=judged_cost)[:1]:
+            fit = self._steps.settled(rival.fit.model)
+            if worthwhile(self.problem, found.start, found.start, fit):
+                grown = self._better(grown, fit)
+        return grown
+
+    def _grown(
+        self, found: Found, before: Fit, screen: Screen, proposals: Sequence[Proposal]
+    ) -> Fit | None:
         """Return a state with the causes that explain most together; None where none does."""
         state = screen.fit
         leading = best_of(proposals)[:TELLING]
@@ -119,8 +157,8 @@ class Search:
         fit = self._steps.pruned(
             found.start, self._steps.settled(fit.model, self.problem.slopes(state))
         )
-        new = set(fit.model.causes) - set(state.model.causes)
-        return fit if new and worthwhile(self.problem, found.start, state, fit) else None
+        new = set(fit.model.causes) - set(before.model.causes)
+        return fit if new and worthwhile(self.problem, found.start, before, fit) else None
 
     def _subset(self, screen: Screen, proposals: Sequence[Proposal], most: int) -> list[Member]:
         """Return the proposals that together explain most, to first order."""

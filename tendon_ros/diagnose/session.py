@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import time
 
+from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
@@ -28,6 +29,7 @@ from tendon_ros.diagnose.prepare import KEPT, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.driving import as_recorded, drives
 from tendon_ros.model.instrument import Instrument
 
 Report = Callable[[str, float], None]
@@ -72,12 +74,20 @@ def diagnose(
     """
     began = time.monotonic()
     report('looking at the recordings', 0.0)
+    given = instrument
+    instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
     ready = prepared(intake.recordings, instrument)
     measured = {name for r in intake.recordings for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold)
     search = Search(ready.problem, candidates, jobs, report, memory)
     found = search.run()
+    again = ready.heard_again(found.final.model)
+    if again.quieter(ready):
+        report('looking again: what was taken for noise was not', 0.0)
+        ready = again
+        search = Search(ready.problem, candidates, jobs, report)
+        found = search.run()
     if surprising(ready, found):
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
@@ -108,7 +118,7 @@ def diagnose(
     places = whereabouts(ready, found, accepted, believed, left)
     beyond = left_over(left, form)
     channels = gaps(heard.held, final.model)
-    repaired = patched(heard.problem, final.model, instrument)
+    repaired = patched(heard.problem, final.model, given)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
@@ -129,7 +139,7 @@ def diagnose(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
         next_experiment=ahead,
-        left_out=intake.left_out,
+        left_out=(*intake.left_out, *_by_torque(instrument)),
     )
     evidence = Evidence(
         instrument=instrument.name,
@@ -144,3 +154,14 @@ def diagnose(
     )
     report('done', 1.0)
     return Outcome(diagnosis, evidence, repaired, weighed)
+
+
+def _by_torque(instrument: Instrument) -> list[str]:
+    """Say which motors had no position to drive the model with."""
+    motors = [d.motor for d in drives(instrument) if d.by_torque]
+    if not motors:
+        return []
+    return [
+        f'the position of {listed(motors)} was not recorded: the model is driven with the torque '
+        'instead, and what it gets wrong adds up; record the position where there is an encoder'
+    ]

@@ -118,7 +118,9 @@ class Steps:
             model = state.model.joined(proposal.candidate, proposal.values)
             # sizes and shapes lie along curved valleys: more of them, more steps
             rounds = 6 * len(proposal.candidate.parameters)
-            fit = self.problem.fitted(model, known, rounds=rounds, accuracy=1e-2)
+            # a sensor that loses its sign turns all derivatives
+            own = known if proposal.sizes else None
+            fit = self.problem.fitted(model, own, rounds=max(rounds, 6), accuracy=1e-2)
             return Rival(proposal.candidate, fit)
 
         found = [

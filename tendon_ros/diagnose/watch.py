@@ -25,8 +25,9 @@ from tendon_ros.diagnose.watch_gap import GapJudge, WatchedGap
 from tendon_ros.diagnose.watch_stream import Streams
 from tendon_ros.estimate.observer import Measurement
 from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.segment import motor_channels, reading_error, Segment
+from tendon_ros.identify.segment import reading_error, Segment
 from tendon_ros.model.instrument import Instrument
 
 BoolArray = NDArray[np.bool_]

@@ -11,7 +11,7 @@ import numpy as np
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement
-from tendon_ros.identify.segment import motor_channels
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument
 
 #: so long without a motor's position, and nobody knows how the instrument came to where it is [s]

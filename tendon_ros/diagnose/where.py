@@ -14,15 +14,15 @@ TURN = 0.25  # [s] about a reversal
 STILL = 0.03  # part of the largest speed below which a motor holds
 
 
-def regimes(segment: Segment, force: FloatArray | None) -> TextArray:
+def regimes(segment: Segment, speed: FloatArray, force: FloatArray | None) -> TextArray:
     """
     Return the regime of each bin: how the motors move, and what presses on the tip.
 
     :param segment: the recording.
+    :param speed: of the driven pulleys [rad/s], shape (pulleys, bins).
     :param force: predicted force of all contacts, shape (bins,); None without contacts.
     :return: texts, shape (bins,).
     """
-    speed = segment.motion.slope
     largest = np.abs(speed).max(axis=1, keepdims=True) + 1e-9
     relative = np.abs(speed) / largest
     leading = relative.argmax(axis=0)

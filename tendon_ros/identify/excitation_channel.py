@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import channel_name
-from tendon_ros.identify.segment import motor_channels
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.runner import Rows
 

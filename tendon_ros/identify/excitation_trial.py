@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, Values
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
 from tendon_ros.identify.excitation_rig import ACCURACY, performed, touching
 from tendon_ros.identify.rollout import modified, true_motion
-from tendon_ros.identify.segment import motor_channels, Segment, SETTLING
+from tendon_ros.identify.segment import Segment, SETTLING
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse, Instrument
@@ -200,7 +201,7 @@ class Trial:
             count = sensors[name].resolution
             if count > 0.0:
                 seen = count * np.round(angle / count)
-                rows.append(smoothed(seen, known, count / np.sqrt(12.0)))
+                rows.append(smoothed(seen, known, count / np.sqrt(12.0), count))
             else:
                 rows.append(angle)
         return self._driven(np.array(rows), self._drive.reported, period)

@@ -21,7 +21,7 @@ from tendon_ros.model.instrument import EffectUse
 FloatArray = NDArray[np.float64]
 
 FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
-NEIGHBOURS = 5  # bins between which noise is a difference and motion is not
+NEAR = 0.04  # [s] within which noise is a difference and motion is not
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
 
@@ -187,9 +187,10 @@ class Residuals:
         """
         power: dict[str, list[float]] = {}
         for n, c, own in self.groups(left):
-            if len(own) <= NEIGHBOURS:
+            apart = neighbours(self._segments[n].period)
+            if len(own) <= apart:
                 continue
-            step = own[NEIGHBOURS:] - own[:-NEIGHBOURS]
+            step = own[apart:] - own[:-apart]
             noise = 0.5 * float(step @ step) * len(own) / len(step)
             # what keeps below the floor is no gap, whatever its shape: counts of a still encoder
             beyond = min(float(own @ own) - noise, float(own @ own) - FLOOR * len(own))
@@ -207,6 +208,16 @@ class Residuals:
         :return: segment, channel, and its samples in the order of time.
         """
         return [(n, c, vector[span]) for n, c, span in self.spans()]
+
+
+def neighbours(period: float) -> int:
+    """
+    Return how far bins are apart between which noise is a difference and motion is not.
+
+    :param period: length of a bin [s].
+    :return: in bins.
+    """
+    return max(1, round(NEAR / period))
 
 
 def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:

@@ -171,7 +171,7 @@ def modified(instrument: Instrument) -> Numbers:
 
 def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> Signals:
     """
-    Return the motion that the encoders of the driven pulleys saw, their own effects taken back.
+    Return what drove the rig: motions that encoders saw and torques that motors reported, mended.
 
     :param instrument: with its effects.
     :param numbers: after its effects.
@@ -196,6 +196,15 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
                 value[row] = (value[row] - offset) / gain
                 slope[row] = slope[row] / gain
             break
+    for row, pulley in enumerate(segment.pushed, start=len(segment.prescribed)):
+        motors = [j for j, m in enumerate(instrument.motors) if m.pulley == pulley]
+        for j in motors:
+            gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
+            limit = numbers['motor_limit'][j]
+            given = gain * value[row] + bias
+            value, slope = value.copy(), slope.copy()
+            value[row] = np.clip(given, -limit, limit)
+            slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
     return Signals(value, slope, start, motion.step)
 
 

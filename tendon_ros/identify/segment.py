@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.identify.driving import drives, motor_channels
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
@@ -51,7 +51,8 @@ class Segment:
     ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from the
     recording's start. ``motion`` drives ``prescribed`` pulleys. ``contacts`` are those that were
     there. ``pose`` is where the other pulleys began [rad]. ``pushed`` are pulleys on which a
-    measured load acts; its torque follows the motions in ``motion``.
+    known torque acts, of a motor without encoder or of a measured load; torques follow the motions
+    in ``motion``.
     """
 
     name: str
@@ -91,46 +92,31 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     return sampling * round(wished / sampling)
 
 
-def motor_channels(instrument: Instrument) -> tuple[str, ...]:
-    """
-    Return the channels of the motors' encoders, in the motors' order.
-
-    :param instrument: the network.
-    :return: channel names.
-    :raises RecordingError: where a driven pulley has no angle sensor.
-    """
-    found = []
-    for pulley in instrument.driven:
-        channels = [s.channel for s in instrument.sensors if s.kind == 'angle' and s.of == pulley]
-        if not channels:
-            raise RecordingError(
-                f'{instrument.name}: pulley {pulley} is driven but has no encoder; without it the '
-                'model cannot be driven with measured motion'
-            )
-        found.append(channels[0])
-    return tuple(found)
-
-
 def segment_of(instrument: Instrument, recording: Recording, period: float) -> Segment:
     """
     Return a recording as a segment; contacts and noise are settled by the caller.
 
     :param instrument: the network.
-    :param recording: with the motors' encoders.
+    :param recording: with all that drives the model.
     :param period: length of a bin [s].
     :return: the segment, with every contact of the instrument and the sensors' noise alone.
-    :raises RecordingError: where a motor's encoder is missing.
+    :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
-    encoders = motor_channels(instrument)
-    start = max(float(recording[name].time[0]) for name in encoders)
-    end = min(float(recording[name].time[-1]) for name in encoders)
+    driving = sorted(drives(instrument), key=lambda d: d.by_torque)
+    known = [d.sensor.channel for d in driving]
+    start = max(float(recording[name].time[0]) for name in known)
+    end = min(float(recording[name].time[-1]) for name in known)
     bins = int((end - start) / period)
     time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
-    sensors = {s.channel: s for s in instrument.sensors}
-    rows = [_motion(recording[name], sensors[name], start, period, bins) for name in encoders]
+    rows = [
+        _torque(recording[d.sensor.channel], start, period, bins)
+        if d.by_torque
+        else _motion(recording[d.sensor.channel], d.sensor, start, period, bins)
+        for d in driving
+    ]
     measured = []
     for sensor in instrument.sensors:
-        if sensor.channel in encoders or sensor.channel not in recording:
+        if sensor.channel in known or sensor.channel not in recording:
             continue
         value, noise = _binned(recording[sensor.channel], sensor, start, period, bins)
         measured.append(Measured(sensor, value, np.full(bins, noise), noise))
@@ -138,13 +124,20 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         name=recording.name,
         period=period,
         time=time,
-        prescribed=instrument.driven,
+        prescribed=tuple(d.pulley for d in driving if not d.by_torque),
         motion=Signals.smooth(0.5 * period, period, np.array(rows)),
         measured=tuple(measured),
         contacts=tuple(c.name for c in instrument.contacts if c.enabled),
         pose={},
         start=start,
+        pushed=tuple(d.pulley for d in driving if d.by_torque),
     )
+
+
+def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatArray:
+    """Return a torque at the middles of the bins: it may jump, and is not smoothed."""
+    middles = start + period * (np.arange(bins, dtype=np.float64) + 0.5)
+    return np.asarray(channel.at(middles), dtype=np.float64)
 
 
 def _motion(
@@ -160,7 +153,9 @@ def _motion(
         np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
     )
     error = reading_error(channel, sensor)
-    angle = smoothed(channel.at(grid), gap < 1.5 * sampling, error)
+    known = sensor.resolution > 0.0 or sensor.noise > 0.0
+    count = sensor.resolution if known else error * np.sqrt(12.0)
+    angle = smoothed(channel.at(grid), gap < 1.5 * sampling, error, count)
     middles = start + period * (np.arange(bins) + 0.5)
     found: FloatArray = np.interp(middles, grid, angle)
     return found
@@ -225,7 +220,7 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
     :return: the segment; None where no load was measured.
     """
     rows: list[FloatArray] = []
-    pushed: list[str] = []
+    pushed = list(segment.pushed)
     inputs: set[str] = set()
     contacts = {c.name: c for c in instrument.contacts}
     for sensor in instrument.sensors:
@@ -245,7 +240,7 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
                 rows.append(-arm * ratio * load)
     if not rows:
         return None
-    driving = segment.motion.value[: len(segment.prescribed)]
+    driving = segment.motion.value
     return replace(
         segment,
         motion=Signals.smooth(

@@ -4,7 +4,9 @@ Smooth motion from encoder counts, as smooth as the counts allow and no smoother
 A stiff cable turns one count into a torque far above a torque sensor's noise, so measured motion
 cannot drive a model as it is. Between samples the truth is only known to half a count; of all
 motions that stay so near, the one with the least jerk is taken (Whittaker's smoother of order
-three, with the smoothing chosen by the discrepancy principle).
+three, with the smoothing chosen by the discrepancy principle: once for all that moves, more of it
+where a motor rests, less where it starts). A motor that rests between two counts reads now one,
+now the other, and there every angle within half a count is as good: what flickers does not move.
 """
 
 from __future__ import annotations
@@ -12,50 +14,110 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
+from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 # the penalty's exponents in steps of half a decade, up to a cut-off of about 0.1 periods
 _WEAKEST, _STRONGEST = 0, 24
+_SEEN = 51  # samples that the strongest smoother sees
+_EVEN = 9  # samples over which the penalty goes from one exponent to the next
+_JERK = np.array([-1.0, 3.0, -3.0, 1.0])
+_SETTLES = 15  # solutions until what rests has found its place within the counts
+#: a quantised reading is never off by more than sqrt(3) deviations; half as much again forgives
+#: the ends of a motion, where the truth turns within one count
+_FARTHEST = 2.6
+_USUAL = 0.9  # deviations that the smoother leaves
 
 
-def smoothed(value: FloatArray, known: NDArray[np.bool_], error: float) -> FloatArray:
+def smoothed(value: FloatArray, known: BoolArray, error: float, count: float) -> FloatArray:
     """
     Return the least jerky motion within the error of a sensor.
 
     :param value: uniformly sampled readings, shape (n,).
     :param known: which samples were measured, shape (n,); the others are bridged.
     :param error: standard deviation of a reading; zero leaves known samples as they are.
+    :param count: step between readings; zero where the sensor has none.
     :return: shape (n,).
     """
     weight = known.astype(np.float64)
-    best = _penalised(value, weight, 1e-3)
+    filled = np.interp(np.arange(len(value)), np.flatnonzero(known), value[known])
     if error <= 0.0:
-        return np.where(known, value, best)
-    low, high = _WEAKEST, _STRONGEST
-    while low <= high:
+        bridged = _penalised(filled, filled, weight, np.full(len(value), 1e-3))
+        return np.where(known, value, bridged)
+    travel = maximum_filter1d(filled, _SEEN) - minimum_filter1d(filled, _SEEN)
+    rests: BoolArray = travel < 1.25 * count
+    within: FloatArray = np.where(rests, 0.5 * count, 0.0)
+    exponent = np.where(rests, _STRONGEST, _of_motion(filled, weight, known & ~rests, error))
+    found = filled
+    while True:
+        found = _resting(found, filled, weight, exponent, within)
+        off = known & (np.abs(found - value) > _FARTHEST * error) & (exponent > _WEAKEST)
+        if not off.any():
+            return found
+        near = maximum_filter1d(off.astype(np.int8), _SEEN) > 0
+        exponent = np.where(near, np.maximum(exponent - 1, _WEAKEST), exponent)
+
+
+def _of_motion(value: FloatArray, weight: FloatArray, moving: BoolArray, error: float) -> int:
+    """Return the largest exponent with which what moves stays as near as the sensor's error."""
+    low, high, best = _WEAKEST, _STRONGEST, _WEAKEST
+    while low <= high and moving.any():
         middle = (low + high) // 2
-        trial = _penalised(value, weight, 10.0 ** (0.5 * middle - 2.0))
-        left = (trial - value)[known]
-        # a quantised reading is never off by more than sqrt(3) deviations; half as much again
-        # forgives the ends of a motion, where the truth turns within one count
-        near = np.sqrt(np.mean(left**2)) <= 0.9 * error and np.abs(left).max() <= 2.6 * error
-        if near:
-            best = trial
+        penalty = _penalty(np.full(len(value), middle))
+        left = (_penalised(value, value, weight, penalty) - value)[moving]
+        # what starts suddenly is dealt with where it does
+        near = np.minimum(np.abs(left), _FARTHEST * error)
+        if np.sqrt(np.mean(near**2)) <= _USUAL * error:
+            best = middle
             low = middle + 1
         else:
             high = middle - 1
     return best
 
 
-def _penalised(value: FloatArray, weight: FloatArray, penalty: float) -> FloatArray:
-    """Minimise the weighted squares of what is left plus the penalty on third differences."""
+def _resting(
+    start: FloatArray,
+    value: FloatArray,
+    weight: FloatArray,
+    exponent: NDArray[np.int64],
+    within: FloatArray,
+) -> FloatArray:
+    """Return the smoothed motion to which readings that are near enough are no constraint."""
+    penalty = _penalty(exponent)
+    found = _penalised(start, value, weight, penalty)
+    for _ in range(_SETTLES if within.any() else 0):
+        inside = np.clip(found, value - within, value + within)
+        # half as far again as to the nearest edge: projections come to rest sooner
+        nearest = np.where(within > 0.0, found + 1.5 * (inside - found), value)
+        found = _penalised(found, nearest, weight, penalty)
+    return found
+
+
+def _penalty(exponent: NDArray[np.int64]) -> FloatArray:
+    """Return the penalty of each sample's third difference."""
+    even: FloatArray = uniform_filter1d(exponent.astype(np.float64), _EVEN)
+    return 10.0 ** (0.5 * even - 2.0)
+
+
+def _penalised(
+    start: FloatArray, value: FloatArray, weight: FloatArray, penalty: FloatArray
+) -> FloatArray:
+    """
+    Minimise the weighted squares of what is left plus the penalty on third differences.
+
+    Solved for the way from a start, or angles far from zero would drown in rounding.
+    """
     n = len(value)
+    own = penalty[1 : n - 2]
     bands = np.zeros((4, n))
-    difference = np.array([-1.0, 3.0, -3.0, 1.0])
+    pull = weight * (value - start)
+    jerk = own * np.convolve(start, _JERK[::-1], mode='valid')
     for a in range(4):
+        pull[a : n - 3 + a] -= _JERK[a] * jerk
         for b in range(a, 4):
-            bands[3 - (b - a), b : n - 3 + b] += penalty * difference[a] * difference[b]
+            bands[3 - (b - a), b : n - 3 + b] += own * _JERK[a] * _JERK[b]
     bands[3] += weight + 1e-12
-    solved: FloatArray = solveh_banded(bands, weight * value)
-    return solved
+    step: FloatArray = solveh_banded(bands, pull)
+    return start + step

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate, starts
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.rollout import USUAL
 
@@ -104,7 +105,8 @@ class Starting:
         """Find the period of a ripple from what is left of the motor's torque over its angle."""
         instrument = self._problem.rollouts.instrument
         motors = [m for m in instrument.motors if f'motor_{m.name}' == candidate.place]
-        if not motors:
+        encoded = {d.motor for d in drives(instrument) if not d.by_torque}
+        if not motors or motors[0].name not in encoded:
             return [values]
         grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, 400.0, 2.0)])
         power = np.zeros(len(grid))

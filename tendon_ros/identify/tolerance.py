@@ -32,6 +32,11 @@ class Tolerance:
     quantity: str
     axis: Axis
 
+    @property
+    def guessed(self) -> bool:
+        """Whether the file only guesses the number, so that it may end anywhere."""
+        return self.axis.spread != 1.0
+
 
 def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
     """

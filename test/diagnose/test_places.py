@@ -22,7 +22,7 @@ def blamed(bench, measured_on):
     ('effect', 'place', 'values'),
     [
         ('coulomb_friction', 'pulley_3', {'torque': 0.2}),
-        ('coulomb_friction', 'pulley_M', {'torque': 0.2}),
+        ('viscous_friction', 'pulley_M', {'damping': 1.0}),
         ('joint_spring', 'pulley_1', {'stiffness': 1.0}),
         ('torque_gain', 'motor_M', {'gain': 1.3}),
         ('torque_gain', 'motor_L', {'gain': 1.3}),

@@ -86,10 +86,17 @@ def test_means_are_less_noisy_than_samples(body):
     assert fast.floor == pytest.approx(slow.floor / 4.0, rel=0.05)
 
 
-def test_without_an_encoder_nothing_drives_the_model(body):
+def test_without_an_encoder_the_torque_drives_the_model(body):
     blind = replace(body, sensors=tuple(s for s in body.sensors if s.kind != 'angle'))
-    with pytest.raises(RecordingError, match='no encoder'):
-        bin_length([ramps(np.arange(0.0, 4.0, 0.002))], blind)
+    segment = segment_of(blind, ramps(np.arange(0.0, 4.0, 0.002)), 0.008)
+    assert segment.prescribed == ()
+    assert segment.pushed == ('body',)
+    assert segment.measured == ()
+
+
+def test_without_encoder_and_torque_nothing_drives_the_model(body):
+    with pytest.raises(RecordingError, match='neither encoder nor torque_sensor'):
+        bin_length([ramps(np.arange(0.0, 4.0, 0.002))], replace(body, sensors=()))
 
 
 def test_the_error_of_a_reading_is_found_where_the_file_is_silent(body):

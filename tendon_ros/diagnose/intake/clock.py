@@ -15,7 +15,8 @@ import numpy as np
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.intake.breaks import Break, breaks_of, missing_share
-from tendon_ros.diagnose.intake.step import motor_positions, shared_span, Sifted
+from tendon_ros.diagnose.intake.step import shared_span, Sifted
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument
 
 BEFORE, AFTER = 0.05, 0.1  # [s] around a gap in which comparisons feel it
@@ -33,7 +34,7 @@ def cut_at_breaks(recordings: Sequence[Recording], instrument: Instrument) -> Si
     kept: list[Recording] = []
     sentences: list[str] = []
     for recording in recordings:
-        names = motor_positions(instrument)
+        names = motor_channels(instrument)
         breaks = _apart([b for name in names for b in breaks_of(recording[name])])
         bridged = [b for b in breaks if not b.cuts]
         cuts = [b for b in breaks if b.cuts]

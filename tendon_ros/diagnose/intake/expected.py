@@ -17,8 +17,9 @@ from scipy.signal import butter, sosfiltfilt
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import FloatArray, Recording
-from tendon_ros.diagnose.intake.step import compared, motor_positions, shared_span
+from tendon_ros.diagnose.intake.step import compared, shared_span
 from tendon_ros.estimate.channels import deviation, operating_force
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict
@@ -108,7 +109,7 @@ def expectations(
     :param scale: factors on motor positions, by channel; 1 where not given.
     :return: best agreement first; none where the model cannot follow.
     """
-    names = motor_positions(instrument)
+    names = motor_channels(instrument)
     time = _grid(recording, names)
     factors = scale or {}
     motion = {n: factors.get(n, 1.0) * _resampled(recording, n, time) for n in names}

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose.intake.step import compared, motor_positions, Sifted, without
+from tendon_ros.diagnose.intake.step import compared, Sifted, without
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument
 
 #: fewer samples are no channel
@@ -66,7 +67,7 @@ def _known(recording: Recording, instrument: Instrument) -> tuple[Recording, lis
 
 def _misfit(cleaned: Recording, recording: Recording, instrument: Instrument) -> str:
     """Say why a recording cannot be used with the instrument; nothing where it can."""
-    needed = motor_positions(instrument)
+    needed = motor_channels(instrument)
     missing = [name for name in needed if name not in cleaned]
     motors = {n.split('/')[1] for n in recording.channels if n.startswith('actuator/')}
     own = {f'pulley_{name}' for name in instrument.driven}

@@ -8,7 +8,8 @@ import math
 import numpy as np
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose.intake.step import motor_positions, Sifted, sifted
+from tendon_ros.diagnose.intake.step import Sifted, sifted
+from tendon_ros.identify.driving import drives
 from tendon_ros.model.instrument import Instrument
 
 #: overshoot and an encoder's offset that are forgiven [share of the limits' width]
@@ -29,7 +30,11 @@ def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Si
 
 
 def _fault(recording: Recording, instrument: Instrument) -> str:
-    for motor, name in zip(instrument.motors, motor_positions(instrument), strict=True):
+    sensors = {d.motor: d.sensor.channel for d in drives(instrument) if not d.by_torque}
+    for motor in instrument.motors:
+        if motor.name not in sensors:
+            continue
+        name = sensors[motor.name]
         low, high = motor.position_limit
         if not math.isfinite(high - low):
             continue

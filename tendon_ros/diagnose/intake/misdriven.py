@@ -14,8 +14,8 @@ import numpy as np
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.intake.expected import Comparison, Expectation, expectations
 from tendon_ros.diagnose.intake.judgement import may_be_rectified, spent, WORK
-from tendon_ros.diagnose.intake.step import motor_positions
 from tendon_ros.diagnose.intake.units import DEGREES, NEAR
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument
 
 AGREES = 0.7  # correlation of a channel that the mended motion explains
@@ -80,7 +80,7 @@ def misdriven(recording: Recording, instrument: Instrument, runs: Sequence[Expec
     if not suspicious(runs):
         return ''
     before = _telling(runs[0])
-    names = motor_positions(instrument)
+    names = motor_channels(instrument)
     if any(c.correlation < FAILS for c in before.values()):
         for name in names:
             if _flipped(recording, instrument, name, runs[0]):
@@ -122,7 +122,7 @@ def _all_in_degrees(
     """Say whether torques agree once every angle is taken for one in degrees."""
     if not _too_small(before):
         return False
-    names = motor_positions(instrument)
+    names = motor_channels(instrument)
     runs = expectations(recording, instrument, dict.fromkeys(names, 1.0 / DEGREES))
     after = [c for c in _telling(runs[0]).values() if c.sensor.kind != 'angle'] if runs else []
     return bool(after) and all(

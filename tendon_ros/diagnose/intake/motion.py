@@ -8,7 +8,8 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from tendon_ros.base.recording import Channel, FloatArray, Recording
-from tendon_ros.diagnose.intake.step import motor_positions, shared_span, Sifted, sifted
+from tendon_ros.diagnose.intake.step import shared_span, Sifted, sifted
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
 SHORTEST = 1.0  # [s]
@@ -29,7 +30,7 @@ def moving(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
 
 
 def _fault(recording: Recording, instrument: Instrument) -> str:
-    names = motor_positions(instrument)
+    names = motor_channels(instrument)
     start, end = shared_span(recording, names)
     fewest = min(recording[name].value.size for name in names)
     if end - start < SHORTEST or fewest < FEWEST:
@@ -39,9 +40,9 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
         )
     sensors = {s.channel: s for s in instrument.sensors}
     if not any(turned(recording[name], sensors.get(name)) for name in names):
-        widest = max(travel(recording[name].value) for name in names)
+        widest, unit = max((travel(recording[n].value), recording[n].unit) for n in names)
         return (
-            f'without motion: {", ".join(names)} stay within {widest:.2g} rad; move the motors '
+            f'without motion: {", ".join(names)} stay within {widest:.2g} {unit}; move the motors '
             'while recording'
         )
     return ''
@@ -61,9 +62,10 @@ def turned(channel: Channel, sensor: Sensor | None) -> bool:
     """
     Say whether a motor moved.
 
-    :param channel: its position.
-    :param sensor: its encoder, where the instrument describes one.
+    :param channel: its position, or its torque where it has no encoder.
+    :param sensor: what measures it, where the instrument describes one.
     :return: whether it went further than its counts and noise tell.
     """
     count = 0.0 if sensor is None else max(sensor.resolution, 2.0 * sensor.noise)
-    return travel(channel.value) > max(STILL, COUNTS * count)
+    least = STILL if channel.unit == 'rad' else 0.0
+    return travel(channel.value) > max(least, COUNTS * count)

@@ -14,8 +14,9 @@ import numpy as np
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.intake.motion import travel
-from tendon_ros.diagnose.intake.step import motor_positions, Sifted, without
+from tendon_ros.diagnose.intake.step import Sifted, without
 from tendon_ros.diagnose.intake.units import factor_name
+from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.model.instrument import Instrument
 
 STRONG = 0.02  # [rad] of a set-point that a motor must follow visibly
@@ -35,7 +36,7 @@ def followed(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
     for recording in recordings:
         unusable = ''
         wrong: set[str] = set()
-        for name in motor_positions(instrument):
+        for name in encoder_channels(instrument):
             wished = f'setpoint/{name.removeprefix("actuator/")}'
             if wished not in recording:
                 continue

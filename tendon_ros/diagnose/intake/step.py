@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tendon_ros.base.recording import Channel, FloatArray, Recording
-from tendon_ros.estimate.channels import angle_channel
+from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
 #: recordings that a check has left, and sentences on what it has not
@@ -28,25 +28,15 @@ def sifted(recordings: Sequence[Recording], fault: Callable[[Recording], str]) -
     return kept, [f'{recording.name}: {text}' for recording, text in faults if text]
 
 
-def motor_positions(instrument: Instrument) -> tuple[str, ...]:
-    """
-    Return the channels that the model is driven with.
-
-    :param instrument: the network.
-    :return: names, in the order of the motors.
-    """
-    return tuple(angle_channel(instrument, pulley) for pulley in instrument.driven)
-
-
 def compared(recording: Recording, instrument: Instrument) -> tuple[Sensor, ...]:
     """
     Return the sensors whose channels can be compared with the model.
 
     :param recording: what was measured.
     :param instrument: the network.
-    :return: its sensors that the recording has, but for the motors' encoders.
+    :return: its sensors that the recording has, but for those that drive the model.
     """
-    driving = motor_positions(instrument)
+    driving = motor_channels(instrument)
     return tuple(
         s for s in instrument.sensors if s.channel in recording and s.channel not in driving
     )
