@@ -30,15 +30,16 @@ class Off:
     blocks: tuple[float, ...]
 
 
-def gaps(held: Problem, final: Model) -> tuple[ChannelGap, ...]:
+def gaps(held: Problem, start: Model, final: Model) -> tuple[ChannelGap, ...]:
     """
     Return the gap of each channel, the largest against its noise first.
 
     :param held: the bins that no fit has seen.
+    :param start: what the instrument file says.
     :param final: what is believed.
-    :return: the gaps of the instrument file and of the model.
+    :return: the gaps of both.
     """
-    before, after = offs(held, held.empty), offs(held, final)
+    before, after = offs(held, start), offs(held, final)
     noise = noise_of(held)
     rows = [
         ChannelGap(

@@ -117,7 +117,7 @@ def diagnose(
     causes = causes_of(heard, found, final, [weighed[k] for k in accepted])
     places = whereabouts(ready, found, accepted, believed, left)
     beyond = left_over(left, form)
-    channels = gaps(heard.held, final.model)
+    channels = gaps(heard.held, heard.held.empty, final.model)
     repaired = patched(heard.problem, final.model, given)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments

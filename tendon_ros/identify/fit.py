@@ -216,7 +216,9 @@ class Problem(Residuals):
         fresh = []
         once = []
         for j, label in enumerate(labels):
-            if known is not None and label in known:
+            if j >= own and not still[j] and self.tolerances[j - own].guessed:
+                fresh.append(j)  # a guess may go far, and its derivative with it
+            elif known is not None and label in known:
                 slope[:, j] = known[label]
             elif j < own:
                 fresh.append(j)
