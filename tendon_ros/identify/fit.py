@@ -27,6 +27,7 @@ REMEMBERED = 0.4
 #: [s] that begin and end of events are tried at, and how often
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
 MOVES = 2
+FAR = 0.3  # on its axis: what a guess may move until its derivative is taken anew
 CAREFUL = 1e-3  # accuracy from which on they are
 
 
@@ -215,10 +216,11 @@ class Problem(Residuals):
         slope = np.zeros((len(left), len(axes)))
         fresh = []
         once = []
+        guessed = []
         for j, label in enumerate(labels):
             if j >= own and not still[j] and self.tolerances[j - own].guessed:
-                fresh.append(j)  # a guess may go far, and its derivative with it
-            elif known is not None and label in known:
+                guessed.append(j)
+            if known is not None and label in known:
                 slope[:, j] = known[label]
             elif j < own:
                 fresh.append(j)
@@ -227,8 +229,13 @@ class Problem(Residuals):
         slope[:, once] = self.slope(self.unpack(model, x), left, once)
         slope[:, still] = 0.0
         damping = 1e-3
+        taken = x.copy()
         for _ in range(rounds):
-            slope[:, fresh] = self.slope(self.unpack(model, x), left, fresh)
+            # a guess may go far, and its derivative with it
+            gone = [j for j in guessed if abs(x[j] - taken[j]) > FAR]
+            taken[gone] = x[gone]
+            asked = [*fresh, *gone]
+            slope[:, asked] = self.slope(self.unpack(model, x), left, asked)
             normal = slope.T @ slope + np.diag(prior)
             gradient = slope.T @ left + prior * x
             before = cost

@@ -36,7 +36,7 @@ def summary(diagnosis: Diagnosis) -> str:
         lines += _part('where', _where(diagnosis), len(by_place(diagnosis.where)) - _PLACES)
     which = [line for cause in diagnosis.causes[:_CAUSES] for line in _cause(diagnosis, cause)]
     lines += _part('which', which, len(diagnosis.causes) - _CAUSES)
-    lines += _part('gap', _channels(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
+    lines += _part('gap', channel_rows(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
@@ -83,7 +83,13 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
         yield f'  {channel}: {text}'
 
 
-def _channels(gaps: Sequence[ChannelGap]) -> list[str]:
+def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
+    """
+    Return a table of gaps.
+
+    :param gaps: one row each.
+    :return: lines with a head; none without gaps.
+    """
     if not gaps:
         return []
     rows: list[tuple[str, ...]] = [

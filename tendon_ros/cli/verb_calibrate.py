@@ -1,0 +1,43 @@
+"""``tendon calibrate``: fit what was diagnosed on one machine to another of its kind."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from tendon_ros.cli.arguments import takes_bags
+
+HELP = 'fit a diagnosed instrument file to another machine of its kind, and say what differs'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare the arguments.
+
+    :param parser: of this verb.
+    """
+    takes_bags(parser)
+    parser.add_argument(
+        '--out', type=Path, required=True, metavar='FILE.yaml', help='calibrated file to write'
+    )
+
+
+def run(args: argparse.Namespace) -> None:
+    """
+    Calibrate, write the file, and say what carried over.
+
+    :param args: parsed arguments.
+    """
+    from tendon_ros.bags.reader import read_recording
+    from tendon_ros.cli.progress import told
+    from tendon_ros.diagnose.calibrate import calibrate
+    from tendon_ros.model.instrument_file import load_instrument, save_instrument
+    from tendon_ros.report.calibration_text import calibration_text
+
+    instrument = load_instrument(args.instrument)
+    recordings = [read_recording(bag, args.namespace) for bag in args.bag]
+    with told() as report:
+        found = calibrate(recordings, instrument, report)
+    save_instrument(found.instrument, args.out)
+    print(calibration_text(found), end='')
+    print(f'{args.out}: simulate, estimate and diagnose take it as it is')
