@@ -103,7 +103,9 @@ class Screen:
             z = coordinates.place(values)
             sizes = coordinates.sizes
             start = Proposal(one, z, sizes, self._base(candidate))
-            judged = self._judged(start, [1.0] * len(sizes))
+            # the bins about an event hardly count, whatever its size: at a small one they are all
+            at = start.steps if one.instants else [1.0] * len(sizes)
+            judged = self._judged(start, at)
             if judged is not None:
                 found[judged] = None
         return sorted(found, key=lambda p: -p.gain)

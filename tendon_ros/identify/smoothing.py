@@ -22,6 +22,7 @@ BoolArray = NDArray[np.bool_]
 # the penalty's exponents in steps of half a decade, up to a cut-off of about 0.1 periods
 _WEAKEST, _STRONGEST = 0, 24
 _SEEN = 51  # samples that the strongest smoother sees
+_RESTS = 201  # samples within two counts that are a rest, not a slow reversal
 _EVEN = 9  # samples over which the penalty goes from one exponent to the next
 _JERK = np.array([-1.0, 3.0, -3.0, 1.0])
 _SETTLES = 15  # solutions until what rests has found its place within the counts
@@ -46,7 +47,7 @@ def smoothed(value: FloatArray, known: BoolArray, error: float, count: float) ->
     if error <= 0.0:
         bridged = _penalised(filled, filled, weight, np.full(len(value), 1e-3))
         return np.where(known, value, bridged)
-    travel = maximum_filter1d(filled, _SEEN) - minimum_filter1d(filled, _SEEN)
+    travel = maximum_filter1d(filled, _RESTS) - minimum_filter1d(filled, _RESTS)
     rests: BoolArray = travel < 1.25 * count
     within: FloatArray = np.where(rests, 0.5 * count, 0.0)
     exponent = np.where(rests, _STRONGEST, _of_motion(filled, weight, known & ~rests, error))
