@@ -119,6 +119,22 @@ RIGS = {
         },
         own_time='speed_t_us',
     ),
+    'belt_by_voltage': Rig(
+        """
+        - {effect: coulomb_friction, place: pulley_roller, parameters: {torque: 0.01 N*m}}
+        - {effect: inertia, place: pulley_left, parameters: {scale: 1.5}}
+        - {effect: inertia, place: pulley_right, parameters: {scale: 1.5}}
+        - {effect: sensor_rectified, place: speed_roller, parameters: {rectified: 1}}
+        """,
+        {'amplitude': '180 deg', 'duration': '20 s'},
+        50.0,
+        ('t_s', 1.0, 2),
+        {
+            'left_V': Column('actuator/pulley_left/effort', 1.0 / 0.05, 3),
+            'right_V': Column('actuator/pulley_right/effort', 1.0 / 0.05, 3),
+            'speed': Column('pulley/pulley_roller/velocity', 1.0, 2),
+        },
+    ),
 }
 
 

@@ -18,6 +18,8 @@ ROOT = Path(__file__).parents[2]
 PAGES = sorted((ROOT / 'docs' / 'rigs').glob('*.md'))
 #: takes long, and has tests of its own
 NOT_RUN = {'diagnose'}
+#: rigs without a motor encoder
+BY_TORQUE = {'belt_by_voltage'}
 
 
 def blocks(page):
@@ -51,7 +53,8 @@ def test_every_command_runs(page, tmp_path, monkeypatch, capsys):
         verb, *rest = shlex.split(line)
         verbs.append(verb)
         assert verb in NOT_RUN or main([verb, *rest]) == 0, capsys.readouterr().err
-    assert verbs == ['import', 'info', 'check', 'simulate', 'estimate', 'diagnose']
+    every = ['import', 'info', 'check', 'simulate', 'estimate', 'diagnose']
+    assert verbs == [v for v in every if v != 'estimate' or page.stem not in BY_TORQUE]
 
 
 @pytest.mark.parametrize('page', PAGES, ids=lambda p: p.stem)
@@ -64,6 +67,9 @@ def test_a_recording_fits_its_instrument(page):
     work = 0.0
     for motor in one.motors:
         joint = f'actuator/pulley_{motor.pulley}'
+        if page.stem in BY_TORQUE:
+            work += float(np.abs(run[f'{joint}/effort'].value).sum())
+            continue
         angle = run[f'{joint}/position']
         assert np.ptp(angle.value) > 0.2
         effort = run[f'{joint}/effort'].at(angle.time[1:])

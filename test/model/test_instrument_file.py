@@ -273,7 +273,7 @@ def test_file_that_is_not_text(tmp_path):
 def test_names_resolve_to_installed_files():
     assert find_instrument('paper_rig') == find_instrument('paper_rig.yaml')
     with pytest.raises(
-        InstrumentError, match=r'one of the instruments bench_rig, davinci_grasper'
+        InstrumentError, match=r'one of the instruments belt_by_voltage, bench_rig'
     ):
         find_instrument('paper_rog')
     with pytest.raises(InstrumentError, match='no such file'):
