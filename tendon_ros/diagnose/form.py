@@ -14,7 +14,7 @@ import numpy as np
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.starting import BEGUN, LASTS
+from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.worths import worths
 
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
@@ -77,9 +77,13 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
             [value] = values.values()
             return t.axis.low < value < t.axis.high
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
+    # what has been there from the first in one of several recordings happened between them
+    between = between_recordings(problem, candidate)
     for p in candidate.parameters:
-        if p.search == 'instant' and not BEGUN < values[p.name] / longest < 1.0 - BEGUN:
-            return True
+        if p.search == 'instant':
+            at = values[p.name] / longest
+            if at > 1.0 - BEGUN or (at < BEGUN and not between):
+                return True
         if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
         if p.search == 'cycles' and values[p.name] < 1.0:

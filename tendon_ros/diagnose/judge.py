@@ -107,6 +107,26 @@ def signs_of(problem: Problem, found: Found, k: int) -> Signs:
     return Signs(max(worth, 1e-9), in_one, left, explained, form)
 
 
+#: probability that a cause has at most which foretells nothing
+IDLE = 0.3
+
+
+def foretells(ready: Prepared, found: Found, k: int) -> bool:
+    """
+    Return whether a cause makes anything better on what no fit has seen.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param k: which cause.
+    :return: whether; an event need not have happened there.
+    """
+    if found.final.model.causes[k].instants:
+        return True
+    without = ready.held.left(found.without[k].model)
+    left = ready.held.left(found.final.model)
+    return float(without @ without) > float(left @ left)
+
+
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
 #: changes with its logarithm
 EVEN, STEEP = 1.6, 2.5

@@ -72,7 +72,8 @@ class Prepared:
                 [
                     np.minimum(m.noise, np.hypot(_heard(m, row, segment.period), by_counts))
                     for m, row, by_counts in zip(segment.measured, rows, counts, strict=True)
-                ]
+                ],
+                counts,
             )
             for segment, rows, counts in zip(
                 rollouts.segments, predicted, self.counts, strict=True
@@ -236,16 +237,17 @@ def _with_noise(
         np.hypot(_heard(measured, row, segment.period), by_counts)
         for measured, row, by_counts in zip(segment.measured, predicted, counts, strict=True)
     ]
-    return segment.with_noise(noise), counts
+    return segment.with_noise(noise, counts), counts
 
 
 def _heard(measured: Measured, predicted: FloatArray, period: float) -> float:
     """Return the noise of a channel: what bins that are near each other do not share."""
     left = measured.value - predicted
     apart = neighbours(period)
-    step = left[apart:] - left[:-apart]
-    step = step[np.isfinite(step)]
-    found = 1.4826 * float(np.median(np.abs(step))) / np.sqrt(2.0) if step.size else 0.0
+    # second differences: what a wrong model leaves of a motion is nearly straight for so long
+    bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
+    bend = bend[np.isfinite(bend)]
+    found = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if bend.size else 0.0
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
     span = float(np.nanmax(np.abs(measured.value), initial=0.0))
     return max(found, measured.floor, 1e-6 * span + 1e-12)

@@ -157,8 +157,28 @@ class Search:
         fit = self._steps.pruned(
             found.start, self._steps.settled(fit.model, self.problem.slopes(state))
         )
+        if not state.model.causes:
+            fit = self._simplest(found, before, state, proposals, fit)
         new = set(fit.model.causes) - set(before.model.causes)
         return fit if new and worthwhile(self.problem, found.start, before, fit) else None
+
+    def _simplest(
+        self, found: Found, before: Fit, state: Fit, proposals: Sequence[Proposal], many: Fit
+    ) -> Fit:
+        """
+        Return the one cause that fits best where it does as well as many, else the many.
+
+        To first order, smooth effects imitate one that is far from linear.
+        """
+        rivals = self._steps.fitted(state, best_of(proposals), 0.0)
+        if not rivals:
+            return many
+        one = self._steps.settled(rivals[0].fit.model)
+        if not worthwhile(self.problem, found.start, before, one):
+            return many
+        if len(many.model.causes) < 2:
+            return min(one, many, key=lambda fit: fit.cost)
+        return many if worthwhile(self.problem, found.start, one, many) else one
 
     def _subset(self, screen: Screen, proposals: Sequence[Proposal], most: int) -> list[Member]:
         """Return the proposals that together explain most, to first order."""

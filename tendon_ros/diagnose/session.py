@@ -19,7 +19,15 @@ from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.judge import equals, left_over, probability, signs_of, surprising
+from tendon_ros.diagnose.judge import (
+    equals,
+    foretells,
+    IDLE,
+    left_over,
+    probability,
+    signs_of,
+    surprising,
+)
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
@@ -102,7 +110,10 @@ def diagnose(
         )
         for k, cause in enumerate(found.final.model.causes)
     )
-    chances = [probability(w.signs) for w in weighed]
+    chances = [
+        probability(w.signs) if foretells(ready, found, k) else min(IDLE, probability(w.signs))
+        for k, w in enumerate(weighed)
+    ]
     accepted = [k for k, p in enumerate(chances) if p >= NAMED]
     model = found.final.model
     for k in reversed([k for k, p in enumerate(chances) if p < NAMED]):

@@ -192,9 +192,10 @@ class Residuals:
                 continue
             step = own[apart:] - own[:-apart]
             noise = 0.5 * float(step @ step) * len(own) / len(step)
-            # what keeps below the floor is no gap, whatever its shape: counts of a still encoder
-            beyond = min(float(own @ own) - noise, float(own @ own) - FLOOR * len(own))
-            entry = power.setdefault(self._segments[n].measured[c].sensor.channel, [0.0, 0.0])
+            # what keeps below what counts make is no gap, whatever its shape
+            measured = self._segments[n].measured[c]
+            beyond = float(own @ own) - max(noise, FLOOR * measured.counted * len(own))
+            entry = power.setdefault(measured.sensor.channel, [0.0, 0.0])
             entry[0] += max(0.0, beyond)
             entry[1] += len(own)
         whole = sum(e[0] for e in power.values()) / max(sum(e[1] for e in power.values()), 1.0)

@@ -218,7 +218,8 @@ def _as_reported(
     Return the predictions with the torque limits of the motors seen as the recording sees them.
 
     A motor whose torque is cut off reports a torque that no motion tells; there the measured
-    torque stands for the prediction, less what the motion asks beyond the limit.
+    torque stands for the prediction, less what the motion asks beyond the limit. What is cut off
+    is the torque without its noise: a limit that took the noise away would always explain some.
     """
     numbers = modified(instrument)
     names = list(instrument.motor_names)
@@ -230,9 +231,10 @@ def _as_reported(
         if limit >= 1e3:
             continue
         # a limit that most torques passed is none: it would excuse whatever the model asks
-        limit = max(limit, usual.get(measured.sensor.of, 0.0))
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
+        limit = max(limit, gain * usual.get(measured.sensor.of, 0.0))
         asked = gain * found[row] + bias
-        given = np.clip(gain * measured.value + bias, -limit, limit)
-        found[row] = measured.value + (asked - given) / gain
+        reported = measured.level
+        given = np.clip(gain * reported + bias, -limit, limit)
+        found[row] = reported + (asked - given) / gain
     return found

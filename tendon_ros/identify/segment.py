@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ BoolArray = NDArray[np.bool_]
 
 BINS = 20_000  # bins of all recordings together: minutes of data are seen more coarsely
 SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
+LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 
 
@@ -34,13 +36,25 @@ class Measured:
 
     ``value``, shape (bins,), in the sensor's unit, NaN where nothing was measured; ``noise``,
     shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean;
-    ``floor`` is what the sensor alone would by its data sheet.
+    ``floor`` is what the sensor alone would by its data sheet; ``counted`` is the part of the
+    noise's power that counts make: what still encoders leave has a shape, and is noise.
     """
 
     sensor: Sensor
     value: FloatArray
     noise: FloatArray
     floor: float
+    counted: float = 1.0
+
+    @cached_property
+    def level(self) -> FloatArray:
+        """The value without most of its noise: a running mean, shape (bins,), NaN as the value."""
+        known = np.isfinite(self.value)
+        window = np.ones(LEVEL)
+        total = np.convolve(np.where(known, self.value, 0.0), window, mode='same')
+        count = np.convolve(known.astype(np.float64), window, mode='same')
+        with np.errstate(invalid='ignore', divide='ignore'):
+            return np.where(known, total / count, np.nan)
 
 
 @dataclass(frozen=True)
@@ -66,14 +80,18 @@ class Segment:
     start: float = 0.0
     pushed: tuple[str, ...] = ()
 
-    def with_noise(self, noise: Sequence[FloatArray]) -> Segment:
+    def with_noise(self, noise: Sequence[FloatArray], counts: Sequence[FloatArray]) -> Segment:
         """
         Return the same with another noise.
 
         :param noise: of each channel, shape (bins,).
+        :param counts: what the motion's counts make of each channel, shape (bins,).
         :return: the segment.
         """
-        changed = (replace(m, noise=n) for m, n in zip(self.measured, noise, strict=True))
+        changed = []
+        for m, n, c in zip(self.measured, noise, counts, strict=True):
+            counted = (c**2 + m.sensor.resolution**2 / 12.0) / n**2
+            changed.append(replace(m, noise=n, counted=float(min(1.0, np.mean(counted)))))
         return replace(self, measured=tuple(changed))
 
 

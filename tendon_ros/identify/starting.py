@@ -73,7 +73,8 @@ class Starting:
             one = replace(candidate, only=only)
             sums = self._running_sums(change, one)
             if sums is not None:
-                gain, begun = _best_begin(one, values, *sums)
+                first = 0.0 if between_recordings(self._problem, one) else BEGUN
+                gain, begun = _best_begin(one, values, first, *sums)
                 found.append((gain, one, begun))
         found.sort(key=lambda entry: -entry[0])
         return [(one, begun) for _, one, begun in found[:EVENTS] if begun]
@@ -148,9 +149,22 @@ class Starting:
         return [values | {name: float(v)} for v in np.geomspace(largest, least, LEVELS)]
 
 
+def between_recordings(problem: Problem, candidate: Candidate) -> bool:
+    """
+    Return whether a candidate may have happened before its one recording began.
+
+    :param problem: the data.
+    :param candidate: the candidate.
+    :return: whether others of several recordings tell what was before, and nothing ends it.
+    """
+    lasts = any(p.search == 'duration' for p in candidate.parameters)
+    return bool(candidate.only) and len(problem.rollouts.segments) > 1 and not lasts
+
+
 def _best_begin(
     candidate: Candidate,
     values: dict[str, float],
+    first: float,
     time: FloatArray,
     pull: FloatArray,
     square: FloatArray,
@@ -158,7 +172,8 @@ def _best_begin(
     """
     Return by how much an event lowers the squares, with its values; none where it does nothing.
 
-    ``time``, ``pull``, ``square``: running sums, shape (bins + 1,), of an event that lasts.
+    ``first``: part of the time in which it does not begin; ``time``, ``pull``, ``square``: running
+    sums, shape (bins + 1,), of an event that lasts.
     """
     [instant] = [p for p in candidate.parameters if p.search == 'instant']
     lasting = [p for p in candidate.parameters if p.search == 'duration']
@@ -166,7 +181,7 @@ def _best_begin(
     ends = len(time) - 1
     # what begins with the first bin that counts has always been there
     seen = int(np.searchsorted(square, 1e-9 * square[-1], side='right'))
-    begin = max(seen + 1, round(BEGUN * ends))
+    begin = max(seen + 1, round(first * ends))
     longest = max(2, round(LASTS * ends))
     best = (0.0, min(begin, ends - 1), ends)
     for a in range(begin, round((1.0 - BEGUN) * ends), max(1, ends // 400)):
