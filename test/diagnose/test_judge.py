@@ -1,0 +1,53 @@
+"""Causes that foretell nothing, and events between recordings."""
+
+from dataclasses import replace
+
+import pytest
+
+from tendon_ros.diagnose.form import degenerate
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import foretells
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+
+FRICTION = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
+
+
+@pytest.fixture(scope='module')
+def ready(bench, measured_on):
+    """Return two recordings of a bench with friction, made ready."""
+    runs = [measured_on(bench, FRICTION), replace(measured_on(bench, FRICTION, seed=2), name='b')]
+    return prepared(runs, bench)
+
+
+def found_with(problem, *uses):
+    """Return what a search would have found that ended with these causes."""
+    model = problem.empty
+    for effect, place, values in uses:
+        model = model.joined(Candidate(effect, place), values)
+    states = [problem.fitted(problem.empty), problem.fitted(model)]
+    final = states[-1].model
+    found = Found()
+    found.states = states
+    found.without = [problem.fitted(final.without(k)) for k in range(len(final.causes))]
+    return found
+
+
+def test_a_true_cause_foretells(ready):
+    found = found_with(ready.problem, FRICTION)
+    assert foretells(ready, found, 0)
+
+
+def test_a_cause_that_spoils_what_was_not_fitted_does_not(ready):
+    found = found_with(ready.problem, FRICTION)
+    wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.05})
+    found.without.append(found.final)
+    found.states.append(replace(found.final, model=wrong))
+    assert not foretells(ready, found, 1)
+
+
+def test_a_slip_from_the_first_happened_between_recordings(ready):
+    values = {'jump': 1e-4, 'time': 0.01}
+    slip = Candidate('cable_slip', 'cable_12')
+    assert degenerate(ready.problem, slip, values)
+    assert not degenerate(ready.problem, replace(slip, only='b'), values)

@@ -1,0 +1,78 @@
+"""What drives the model: motion where there is an encoder, torque where there is none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.identify.driving import as_recorded, drives, encoder_channels, motor_channels
+from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.segment import segment_of
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
+
+TORQUE = 'actuator/pulley_{}/effort'
+SPEED = 'pulley/pulley_roller/velocity'
+
+
+@pytest.fixture(scope='module')
+def belt():
+    """Return a belt whose motors had no encoder that was recorded."""
+    recorded = {SPEED, TORQUE.format('left'), TORQUE.format('right')}
+    return as_recorded(load_instrument('belt_by_voltage'), recorded)
+
+
+def pushed(belt, left=0.02, right=0.02, seconds=4.0):
+    """Return a recording of constant torques."""
+    time = np.arange(0.0, seconds, 0.02)
+    channels = [
+        Channel(TORQUE.format('left'), time, np.full(len(time), left)),
+        Channel(TORQUE.format('right'), time, np.full(len(time), right)),
+        Channel(SPEED, time, np.zeros(len(time))),
+    ]
+    return Recording(name='pushed', channels={c.name: c for c in channels})
+
+
+def test_an_encoder_comes_before_a_torque(bench):
+    assert [d.by_torque for d in drives(bench)] == [False, False]
+    assert motor_channels(bench) == encoder_channels(bench)
+
+
+def test_what_was_not_recorded_does_not_drive(belt):
+    assert [d.by_torque for d in drives(belt)] == [True, True]
+    assert motor_channels(belt) == (TORQUE.format('left'), TORQUE.format('right'))
+    assert encoder_channels(belt) == ()
+
+
+def test_what_was_recorded_stays(bench):
+    assert as_recorded(bench, motor_channels(bench)) == bench
+
+
+def test_without_either_nothing_drives(bench):
+    with pytest.raises(RecordingError, match='motor M has neither encoder nor torque_sensor'):
+        drives(replace(bench, sensors=()))
+
+
+def test_torque_turns_the_belt_until_damping_takes_all_of_it(belt):
+    segment = segment_of(belt, pushed(belt), 0.02)
+    assert segment.prescribed == ()
+    assert segment.pushed == ('left', 'right')
+    [[speed]] = Rollouts(belt, [segment]).predicted([[]])
+    damping = sum(p.damping for p in belt.pulleys)
+    assert abs(speed[-1]) == pytest.approx(0.04 / damping, rel=0.01)
+
+
+def test_gain_and_limit_are_those_of_the_motor(belt):
+    segment = segment_of(belt, pushed(belt), 0.02)
+    rollouts = Rollouts(belt, [segment])
+    [[plain]] = rollouts.predicted([[]])
+    gains = [EffectUse('torque_gain', f'motor_{m}', {'gain': 0.5}) for m in ('left', 'right')]
+    [[half]] = rollouts.predicted([gains])
+    assert half[-1] == pytest.approx(0.5 * plain[-1], rel=1e-3)
+    limits = [
+        EffectUse('torque_saturation', f'motor_{m}', {'limit': 0.005}) for m in ('left', 'right')
+    ]
+    [[quarter]] = rollouts.predicted([limits])
+    assert quarter[-1] == pytest.approx(0.25 * plain[-1], rel=1e-3)
