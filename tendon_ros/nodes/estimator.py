@@ -20,6 +20,12 @@ PROGRAM = Program(
             '; '.join(f'{name}: {text}' for name, text in METHODS.items()),
             choices=tuple(METHODS),
         ),
+        Setting(
+            'channels',
+            '',
+            'for static_balance: channels to use instead of the motors, with commas between them, '
+            'such as pulley/pulley_spindle/position,pulley/pulley_spindle/effort',
+        ),
         ENGINE,
     ),
     made_by='estimator_node:EstimatorNode',

@@ -52,7 +52,10 @@ class EstimatorNode(TendonNode):
             'compile for some twenty seconds'
         )
         start = time.monotonic()
-        self._observer: Observer = build(instrument, self._method, engine=str(values['engine']))
+        channels = [name for name in str(values['channels']).split(',') if name]
+        self._observer: Observer = build(
+            instrument, self._method, channels=channels or None, engine=str(values['engine'])
+        )
         self._together = Synchroniser(self._observer.needs)
         self._broadcast = Broadcast(self)
         self._last_ns: int | None = None

@@ -294,6 +294,16 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
             'did you mean effects.cable_L3.pretension.scale?',
         ),
         ('estimator', ['--method', 'magic'], 'there are contact_angle'),
+        (
+            'estimator',
+            ['--method', 'static_balance', '--channels', 'actuator/pulley_M/effort,none'],
+            'none',
+        ),
+        (
+            'estimator',
+            ['--method', 'dynamic', '--channels', 'actuator/pulley_M/effort'],
+            'choose channels with static_balance',
+        ),
         ('trajectory', ['--trajectory', 'nothing'], "no trajectory 'nothing'"),
         ('trajectory', ['--step.amplitude', '3', '--trajectory', 'step'], 'position_limit'),
         (
