@@ -14,12 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from tendon_ros.base.parameter import Parameter
+from tendon_ros.effects import find
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.residuals import SUDDEN
 
 FloatArray = NDArray[np.float64]
 
 CLUSTER = 1.0  # [s] of samples that count as one piece of evidence
-#: relative error of a size that the form of a law leaves, one deviation
+#: relative error of a size that the form of any law leaves, one deviation
 SIZE_FORM = 0.02
 SMALL = 1e-5  # step of a derivative, on an axis
 
@@ -87,29 +90,44 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
         coordinates = cause.coordinates
         centre = coordinates.values(z)
+        form = float(np.hypot(SIZE_FORM, find(cause.effect).form))
         row: dict[str, tuple[float, float]] = {}
         for n, p in enumerate(cause.parameters):
             value, axis = centre[p.name], coordinates.axes[n]
+            by_form = _by_form(p, value, form)
             direction = np.zeros((1, fit.slope.shape[1]))
             if coordinates.paired(n):
                 for j, step in enumerate(SMALL * np.eye(len(z))):
                     moved = coordinates.values([a + b for a, b in zip(z, step, strict=True)])
                     direction[0, at + j] = (moved[p.name] - value) / SMALL
-                wide = float(spread.along(direction)[0])
-                if not p.is_shape:
-                    wide = float(np.hypot(wide, SIZE_FORM * abs(value)))
+                wide = float(np.hypot(spread.along(direction)[0], by_form))
                 ends = value - reach * wide, value + reach * wide
                 row[p.name] = max(p.low, ends[0]), min(p.high, ends[1])
                 continue
             direction[0, at + n] = 1.0
-            wide = float(spread.along(direction)[0])
-            if n in coordinates.sizes and not axis.log:
-                wide = float(np.hypot(wide, SIZE_FORM * abs(z[n])))
+            by_form /= axis.scale * (abs(value) + 1e-30 if axis.log else 1.0)
+            wide = float(np.hypot(spread.along(direction)[0], by_form))
             ends = axis.value(z[n] - reach * wide), axis.value(z[n] + reach * wide)
             row[p.name] = (min(*ends, value), max(*ends, value))
         at += len(z)
         found.append(row)
     return found
+
+
+def _by_form(parameter: Parameter, value: float, form: float) -> float:
+    """
+    Return what the form of a law leaves open of a parameter, one deviation in its unit.
+
+    A size may be off by as much as the law is, what shapes the law by twice as much; no event is
+    as sudden as its law.
+    """
+    if parameter.search in ('instant', 'duration'):
+        return SUDDEN / 4.0
+    if parameter.search in ('phase', 'share'):
+        return form
+    if parameter.search in ('level', 'rest'):
+        return form * abs(value)
+    return 2.0 * form * abs(value) if parameter.is_shape else form * abs(value - parameter.neutral)
 
 
 def mean_square_interval(squares: Sequence[float]) -> tuple[float, float]:
