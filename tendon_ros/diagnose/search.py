@@ -17,7 +17,7 @@ from tendon_ros.diagnose.form import at_once
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, judged_cost, Report, Steps
-from tendon_ros.diagnose.worth import LEAST, open_question, worthwhile
+from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen
@@ -101,7 +101,7 @@ class Search:
                 break
             # better causes may leave more to see: look again where a challenge has changed them
             self._challenge.of(found)
-            if found.final is state:
+            if found.final is state or hopeless(self.problem, found.start, found.final):
                 break
             state = challenged = found.final
         self._ordered(found)

@@ -11,6 +11,8 @@ LEAST, LEAST_IN_ONE = 0.03, 0.12
 ATTEMPTS = 4.0
 #: part of what is left that a cause must explain which is smaller than the form of other laws
 TAKES = 0.65
+#: times the form of the laws that may be left for a search to go on after a challenge
+HOPELESS = 10.0
 #: times the form of other laws that an event must explain: it fits whatever they once get wrong
 TIMES_EVENT = 10.0
 
@@ -48,6 +50,19 @@ def open_question(problem: Problem, state: Fit) -> bool:
     """
     whole, in_one = problem.structures(state.left)
     return whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
+
+
+def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
+    """
+    Return whether so much is left that none of the laws can be what is behind it.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with all that was found.
+    :return: whether further causes would only imitate it.
+    """
+    left = problem.structured(state.left)
+    return left > HOPELESS * (LEAST + form_power(problem, start, state))
 
 
 def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:

@@ -1,0 +1,145 @@
+"""
+Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.grasper FILE.npz``.
+
+Trains on the runs of even frequencies and loads, or takes the instrument file of an earlier
+diagnosis, and says of the runs that it has not seen: the torque of the spindle predicted from the
+jaw's torque and the motion; the jaw's torque and angle estimated from the spindle, and from the
+motor alone. Standard output is a table, a picture goes to ``--figure``.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.bags.importing import import_runs
+from tendon_ros.bags.mapping import load_mapping
+from tendon_ros.base.recording import Recording
+from tendon_ros.base.resources import config_path
+from tendon_ros.diagnose.intake import admitted
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.session import diagnose
+from tendon_ros.estimate import build, estimate_recording
+from tendon_ros.identify.segment import SETTLING
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument_file import load_instrument, save_instrument
+
+FloatArray = NDArray[np.float64]
+
+TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in (0, 2, 4, 6, 8))
+EVERY = tuple(f'{speed}{load}' for speed in range(5) for load in range(10))
+SPINDLE = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
+MOTOR = ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort')
+JAW = 'pulley/pulley_jaw/position'
+LOAD = 'load_cell/torque'
+RATE = 50.0  # [Hz] of estimates: the motions are of half a hertz
+
+
+def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, FloatArray]:
+    """Return the spindle's torque as measured and as the model has it [N m], shape (bins,)."""
+    problem = prepared(admitted([run], instrument).recordings, instrument).whole
+    [segment] = problem.rollouts.segments
+    [rows] = problem.rollouts.predicted([[]])
+    channels = [m.sensor.channel for m in segment.measured]
+    at = channels.index(SPINDLE[1])
+    kept = segment.time > SETTLING
+    return segment.measured[at].value[kept], rows[at][kept]
+
+
+def estimated(
+    run: Recording, instrument: Instrument, channels: Sequence[str]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return errors of jaw torque [N m] and angle [rad], and errors by the stated deviation."""
+    out = estimate_recording(
+        run, build(instrument, 'static_balance', channels=channels), rate=RATE
+    )
+    time = out['estimate/torque'].time
+    late = time > run.start + SETTLING
+    torque = out['estimate/torque'].value - run[LOAD].at(time)
+    angle = out[f'estimate/{JAW.removeprefix("pulley/")}'].value - run[JAW].at(time)
+    stated = torque / out['estimate/torque_std'].value
+    return torque[late], angle[late], stated[late]
+
+
+def rms(parts: Sequence[FloatArray]) -> float:
+    """Return the root mean square of all parts together."""
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
+
+
+def main() -> None:
+    """Diagnose, judge, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
+    parser.add_argument('file', help='Tool_5_Maryland_L_3.npz, or another of its kind')
+    parser.add_argument('--instrument', help='of an earlier diagnosis, instead of a new one')
+    parser.add_argument('--out', type=Path, default=Path('out/grasper.yaml'), help='file to write')
+    parser.add_argument('--figure', type=Path, help='picture to write')
+    args = parser.parse_args()
+    mapping = load_mapping(config_path('imports/davinci_grasper.yaml'))
+    runs = {run.name: run for run in import_runs(args.file, mapping, EVERY)}
+    plain = load_instrument('davinci_grasper')
+    if args.instrument:
+        found = load_instrument(args.instrument)
+    else:
+        outcome = diagnose(
+            [runs[key] for key in TRAINED],
+            plain,
+            plan=False,
+            report=lambda what, done: print(f'{done:4.0%} {what}', flush=True),
+        )
+        found = outcome.instrument
+        args.out.parent.mkdir(parents=True, exist_ok=True)
+        save_instrument(found, args.out)
+        for cause in outcome.diagnosis.causes:
+            print(f'{cause.probability:.2f} {cause.effect} {cause.place}')
+    held = [run for key, run in runs.items() if key not in TRAINED]
+    print(f'{len(held)} runs that no fit has seen')
+    for name, instrument in (('file', plain), ('diagnosed', found)):
+        off = [a - b for a, b in (predicted(run, instrument) for run in held)]
+        print(f'{name:10} spindle torque from jaw torque and motion {1e3 * rms(off):6.2f} mN m')
+    for name, channels in (('spindle', SPINDLE), ('motor', MOTOR)):
+        rows = [estimated(run, found, channels) for run in held]
+        inside = np.abs(np.concatenate([r[2] for r in rows])) < 1.96
+        print(
+            f'{name:10} jaw torque {1e3 * rms([r[0] for r in rows]):6.2f} mN m, jaw angle '
+            f'{np.rad2deg(rms([r[1] for r in rows])):5.2f} deg, 95 % intervals hold '
+            f'{inside.mean():.0%}'
+        )
+    if args.figure:
+        drawn(runs, ('14', '37'), (plain, found), args.figure)
+
+
+def drawn(
+    runs: dict[str, Recording],
+    keys: Sequence[str],
+    instruments: tuple[Instrument, Instrument],
+    path: Path,
+) -> None:
+    """Draw the spindle's torque of some runs, measured, by the file, and diagnosed."""
+    import matplotlib
+
+    matplotlib.use('Agg')
+    from matplotlib import pyplot as plt
+
+    figure, axes = plt.subplots(len(keys), 1, figsize=(9, 2.6 * len(keys)), sharex=True)
+    for axis, key in zip(np.atleast_1d(axes), keys, strict=True):
+        for name, instrument in zip(('instrument file', 'diagnosed'), instruments, strict=True):
+            measured, model = predicted(runs[key], instrument)
+            time = SETTLING + np.linspace(0.0, 20.0 - SETTLING, len(measured))
+            if name == 'instrument file':
+                axis.plot(time, 1e3 * measured, color='black', linewidth=1.6, label='measured')
+            axis.plot(time, 1e3 * model, linewidth=1.0, label=name)
+        axis.set_ylabel(f'run {key} [mN m]')
+    np.atleast_1d(axes)[0].legend(loc='upper right', ncols=3)
+    np.atleast_1d(axes)[-1].set_xlabel('time [s]')
+    figure.suptitle('Torque of the spindle, predicted from the torque of the jaw and the motion')
+    figure.tight_layout()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == '__main__':
+    main()
