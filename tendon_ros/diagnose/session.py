@@ -17,6 +17,7 @@ from tendon_ros.diagnose import gather
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
+from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.judge import (
@@ -33,10 +34,10 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import patched
-from tendon_ros.diagnose.prepare import KEPT, prepared
+from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, drives
 from tendon_ros.model.instrument import Instrument
 
@@ -88,25 +89,14 @@ def diagnose(
     ready = prepared(intake.recordings, instrument)
     measured = {name for r in intake.recordings for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold)
-    search = Search(ready.problem, candidates, jobs, report, memory)
-    found = search.run()
-    again = ready.heard_again(found.final.model)
-    if again.quieter(ready):
-        report('looking again: what was taken for noise was not', 0.0)
-        ready = again
-        search = Search(ready.problem, candidates, jobs, report)
-        found = search.run()
-    if surprising(ready, found):
-        report('looking again: something happened in what was held out', 0.0)
-        ready = ready.moved(KEPT // 2)
-        search = Search(ready.problem, candidates, jobs, report)
-        found = search.run()
+    ready, found = _searched(ready, candidates, jobs, report, memory)
+    problem = ready.problem
     report('judging', 0.85)
     weighed = tuple(
         Weighed(
             cause,
-            tuple(r.candidate for r in equals(search.problem, found, k)),
-            signs_of(search.problem, found, k),
+            tuple(r.candidate for r in equals(problem, found, k)),
+            signs_of(problem, found, k),
         )
         for k, cause in enumerate(found.final.model.causes)
     )
@@ -120,11 +110,11 @@ def diagnose(
         model = model.without(k)
     believed = found.final
     if len(accepted) < len(chances):
-        believed = search.problem.fitted(model, rounds=6)
-    left = search.problem.structured(believed.left)
+        believed = problem.fitted(model, rounds=6)
+    left = problem.structured(believed.left)
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    form = form_power(search.problem, found.start, believed)
+    form = form_power(problem, found.start, believed)
     causes = causes_of(heard, found, final, [weighed[k] for k in accepted])
     places = whereabouts(ready, found, accepted, believed, left)
     beyond = left_over(left, form)
@@ -136,9 +126,7 @@ def diagnose(
     loops = closed_loop_gap(intake.recordings, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
     report('looking for what would separate the rest', 0.95)
-    ahead = (
-        next_experiments(instrument, sorted(measured), ready.problem, found, jobs) if plan else ()
-    )
+    ahead = next_experiments(instrument, sorted(measured), problem, found, jobs) if plan else ()
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -165,6 +153,27 @@ def diagnose(
     )
     report('done', 1.0)
     return Outcome(diagnosis, evidence, repaired, weighed)
+
+
+def _searched(
+    ready: Prepared,
+    candidates: Sequence[Candidate],
+    jobs: int,
+    report: Report,
+    memory: Memory | None,
+) -> tuple[Prepared, Found]:
+    """Search, and again where noise, or blocks that were held out, held something to be found."""
+    found = Search(ready.problem, candidates, jobs, report, memory).run()
+    again = ready.heard_again(found.final.model)
+    if again.quieter(ready):
+        report('looking again: what was taken for noise was not', 0.0)
+        ready = again
+        found = Search(ready.problem, candidates, jobs, report).run()
+    if surprising(ready, found):
+        report('looking again: something happened in what was held out', 0.0)
+        ready = ready.moved(KEPT // 2)
+        found = Search(ready.problem, candidates, jobs, report).run()
+    return ready, found
 
 
 def _by_torque(instrument: Instrument) -> list[str]:
