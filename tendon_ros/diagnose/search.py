@@ -145,7 +145,9 @@ class Search:
         leading = best_of(proposals)[:TELLING]
         found.telling |= {(p.candidate.effect, p.candidate.place) for p in leading}
         room = MOST - len(state.model.causes)
-        members = self._subset(screen, proposals, room) if room > 0 else []
+        if room <= 0:
+            return None
+        members = self._subset(screen, proposals, room)
         if not members:
             return None
         model = state.model
@@ -159,8 +161,16 @@ class Search:
         )
         if not state.model.causes:
             fit = self._simplest(found, before, state, proposals, fit)
+        elif not self._believed(found, before, fit):
+            # first order hardly tells the last of many: see which one fits
+            for rival in self._steps.fitted(state, best_of(proposals), 0.0)[:1]:
+                fit = self._steps.pruned(found.start, self._steps.settled(rival.fit.model))
+        return fit if self._believed(found, before, fit) else None
+
+    def _believed(self, found: Found, before: Fit, fit: Fit) -> bool:
+        """Return whether a state has causes that the one before has not, and needs them."""
         new = set(fit.model.causes) - set(before.model.causes)
-        return fit if new and worthwhile(self.problem, found.start, before, fit) else None
+        return bool(new) and worthwhile(self.problem, found.start, before, fit)
 
     def _simplest(
         self, found: Found, before: Fit, state: Fit, proposals: Sequence[Proposal], many: Fit
@@ -174,7 +184,7 @@ class Search:
         if not rivals:
             return many
         one = self._steps.settled(rivals[0].fit.model)
-        if not worthwhile(self.problem, found.start, before, one):
+        if not self._believed(found, before, one):
             return many
         if len(many.model.causes) < 2:
             return min(one, many, key=lambda fit: fit.cost)

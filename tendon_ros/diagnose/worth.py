@@ -13,6 +13,8 @@ ATTEMPTS = 4.0
 TAKES = 0.65
 #: times the form of the laws that may be left for a search to go on after a challenge
 HOPELESS = 10.0
+#: part of what is left in one channel that it must explain else
+HALF = 0.5
 #: times the form of other laws that an event must explain: it fits whatever they once get wrong
 TIMES_EVENT = 10.0
 
@@ -37,7 +39,41 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     if eager:
         return gain > TIMES_EVENT * form
     # what the form of a law leaves has no other cause that would explain most of it
-    return gain > form or gain > TAKES * problem.structured(before.left)
+    if gain > form or gain > TAKES * problem.structured(before.left):
+        return True
+    return _stands_out(problem, start, before, after, form)
+
+
+def _stands_out(problem: Problem, start: Fit, before: Fit, after: Fit, form: float) -> bool:
+    """
+    Return whether a cause explains most of a channel of which the other laws explain little.
+
+    What a law gets wrong shows where it explains much; a preload that moves one pulley does not.
+    """
+    first, then, last = (by_channel(problem, fit) for fit in (start, before, after))
+    explained = (start.cost - before.cost) / max(len(start.left), 1)
+    wrong = form / max(explained, 1e-12)
+    return any(
+        then[c] - last[c] > max(wrong * (first[c] - then[c]), HALF * (then[c] - 1.0), LEAST_IN_ONE)
+        for c in first
+    )
+
+
+def by_channel(problem: Problem, fit: Fit) -> dict[str, float]:
+    """
+    Return what a fit leaves of each channel.
+
+    :param problem: the data.
+    :param fit: the fit.
+    :return: mean squares in noise deviations, all recordings together.
+    """
+    total: dict[str, list[float]] = {}
+    segments = problem.rollouts.segments
+    for n, c, left in problem.groups(fit.left):
+        entry = total.setdefault(segments[n].measured[c].sensor.channel, [0.0, 0.0])
+        entry[0] += float(left @ left)
+        entry[1] += len(left)
+    return {name: square / max(count, 1.0) for name, (square, count) in total.items()}
 
 
 def open_question(problem: Problem, state: Fit) -> bool:
@@ -74,17 +110,9 @@ def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
     :param after: the better one.
     :return: over all samples, and in the channel where it falls most.
     """
-    total: dict[str, list[float]] = {}
-    segments = problem.rollouts.segments
-    for (n, c, a), (_, _, b) in zip(
-        problem.groups(before.left), problem.groups(after.left), strict=True
-    ):
-        name = segments[n].measured[c].sensor.channel
-        entry = total.setdefault(name, [0.0, 0.0])
-        entry[0] += float(a @ a - b @ b)
-        entry[1] += len(a)
+    then, last = by_channel(problem, before), by_channel(problem, after)
     gain = (before.cost - after.cost) / max(len(before.left), 1)
-    return gain, max((e[0] / e[1] for e in total.values() if e[1]), default=0.0)
+    return gain, max((then[c] - last[c] for c in then), default=0.0)
 
 
 def needed(problem: Problem, start: Fit, state: Fit) -> float:
