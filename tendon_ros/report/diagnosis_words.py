@@ -7,7 +7,8 @@ import math
 
 from tendon_ros.effects import find
 
-_KINDS = ('load_cell', 'torque', 'pulley', 'cable', 'coupling', 'motor', 'encoder', 'contact')
+_SENSORS = {'torque': 'torque sensor', 'shaft': 'shaft torque sensor', 'speed': 'speed sensor'}
+_KINDS = ('load_cell', 'pulley', 'cable', 'coupling', 'motor', 'encoder', 'contact', *_SENSORS)
 _QUANTITIES = {'effort': 'torque', 'position': 'angle', 'velocity': 'speed'}
 _GROUPS = {'setpoint': 'set-point', 'estimate': 'estimated'}
 _PROPER = ('Coulomb', 'Stribeck')
@@ -19,7 +20,7 @@ def place_words(place: str) -> str:
     """Return a place in words: ``pulley_3`` is pulley 3."""
     kind = _kind(place)
     name = place.removeprefix(kind).strip('_') if kind else place
-    said = 'torque sensor' if kind == 'torque' else kind.replace('_', ' ')
+    said = _SENSORS.get(kind, kind.replace('_', ' '))
     return ' '.join(part for part in (said, name) if part)
 
 
