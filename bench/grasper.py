@@ -133,9 +133,12 @@ def drawn(
                 axis.plot(time, 1e3 * measured, color='black', linewidth=1.6, label='measured')
             axis.plot(time, 1e3 * model, linewidth=1.0, label=name)
         axis.set_ylabel(f'run {key} [mN m]')
-    np.atleast_1d(axes)[0].legend(loc='upper right', ncols=3)
+    place = {'loc': 'lower right', 'bbox_to_anchor': (1.0, 1.0), 'frameon': False}
+    np.atleast_1d(axes)[0].legend(ncols=3, **place)
     np.atleast_1d(axes)[-1].set_xlabel('time [s]')
-    figure.suptitle('Torque of the spindle, predicted from the torque of the jaw and the motion')
+    figure.suptitle(
+        'Spindle torque from jaw torque and motion', x=0.02, horizontalalignment='left'
+    )
     figure.tight_layout()
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=110)
