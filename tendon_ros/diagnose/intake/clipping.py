@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, FloatArray, Recording
 from tendon_ros.diagnose.intake.step import compared, Sifted
-from tendon_ros.identify.driving import motor_channels
+from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
 BoolArray = NDArray[np.bool_]
@@ -133,7 +133,7 @@ def _from_the_others(
     for sensor in compared(recording, instrument):
         if sensor.channel != channel.name:
             columns.append(recording[sensor.channel].at(channel.time))
-    for name in motor_channels(instrument):
+    for name in encoder_channels(instrument):
         angle = recording[name].at(channel.time)
         columns += [angle, np.gradient(_smooth(angle), channel.time)]
     table = np.stack(columns, axis=1)
