@@ -23,7 +23,7 @@ from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.driving import as_recorded
+from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BRISTLE, Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.instrument import EffectUse, Instrument
@@ -131,7 +131,7 @@ def calibrate(
         misfit=(_misfit(ready.held, start), misfit),
         beginnings=tuple(beginnings),
         needed=enough[0] if enough else None,
-        left_out=intake.left_out,
+        left_out=(*intake.left_out, *said_of_torque(plain)),
     )
 
 

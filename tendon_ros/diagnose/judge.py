@@ -127,6 +127,20 @@ def foretells(ready: Prepared, found: Found, k: int) -> bool:
     return float(without @ without) > float(left @ left)
 
 
+def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
+    """
+    Return the probability that one cause is true, on all that is known.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param k: which cause.
+    :param signs: what speaks for it.
+    :return: 0 to 1.
+    """
+    likely = probability(signs)
+    return likely if foretells(ready, found, k) else min(IDLE, likely)
+
+
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
 #: changes with its logarithm
 EVEN, STEEP = 1.6, 2.5

@@ -149,13 +149,13 @@ def _probes(instrument: Instrument) -> list[tuple[str, Candidate, dict[str, floa
     for contact in instrument.contacts:
         place = contact_place(instrument, contact)
         found.append((place, Candidate('contact_position', place), {'angle': 1e-4}))
-    for sensor in instrument.sensors:
-        if sensor.kind == 'angle' and sensor.of in instrument.driven:
-            found.append((sensor.name, Candidate('encoder_offset', sensor.name), {'angle': 1e-4}))
     for drive in drives(instrument):
         if drive.by_torque:
             place = f'motor_{drive.motor}'
             found.append((place, Candidate('torque_bias', place), {'torque': 0.02}))
+        else:
+            place = drive.sensor.name
+            found.append((place, Candidate('encoder_offset', place), {'angle': 1e-4}))
     return found
 
 

@@ -16,7 +16,7 @@ from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.form import at_once
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.steps import best_of, CORRECTED, judged_cost, Report, Steps
+from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
@@ -126,16 +126,19 @@ class Search:
         screen = Screen(self.problem, file)
         proposals = self._steps.screened(screen)
         grown = self._grown(found, found.start, screen, proposals)
-        best = best_of(proposals)
-        rivals = self._steps.fitted(file, best, 0.0)
         # what is there or not shows only once the guesses have followed
-        either = [p for p in best if not p.sizes]
-        rivals += self._steps.fitted(file, either, 0.0) if either else []
-        for rival in sorted(rivals, key=judged_cost)[:1]:
-            fit = self._steps.settled(rival.fit.model)
-            if worthwhile(self.problem, found.start, found.start, fit):
-                grown = self._better(grown, fit)
+        for asked in (proposals, [p for p in proposals if not p.sizes]):
+            alone = self._alone(file, asked)
+            if alone is not None and self._believed(found, found.start, alone):
+                grown = self._better(grown, alone)
         return grown
+
+    def _alone(self, state: Fit, proposals: Sequence[Proposal]) -> Fit | None:
+        """Return the state with the one cause more that fits best; None without proposals."""
+        if not proposals:
+            return None
+        rivals = self._steps.fitted(state, best_of(proposals), 0.0)
+        return self._steps.settled(rivals[0].fit.model) if rivals else None
 
     def _grown(
         self, found: Found, before: Fit, screen: Screen, proposals: Sequence[Proposal]
@@ -163,8 +166,8 @@ class Search:
             fit = self._simplest(found, before, state, proposals, fit)
         elif not self._believed(found, before, fit):
             # first order hardly tells the last of many: see which one fits
-            for rival in self._steps.fitted(state, best_of(proposals), 0.0)[:1]:
-                fit = self._steps.pruned(found.start, self._steps.settled(rival.fit.model))
+            alone = self._alone(state, proposals)
+            fit = fit if alone is None else self._steps.pruned(found.start, alone)
         return fit if self._believed(found, before, fit) else None
 
     def _believed(self, found: Found, before: Fit, fit: Fit) -> bool:
@@ -180,11 +183,8 @@ class Search:
 
         To first order, smooth effects imitate one that is far from linear.
         """
-        rivals = self._steps.fitted(state, best_of(proposals), 0.0)
-        if not rivals:
-            return many
-        one = self._steps.settled(rivals[0].fit.model)
-        if not self._believed(found, before, one):
+        one = self._alone(state, proposals)
+        if one is None or not self._believed(found, before, one):
             return many
         if len(many.model.causes) < 2:
             return min(one, many, key=lambda fit: fit.cost)

@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import time
 
-from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
@@ -20,15 +19,7 @@ from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.judge import (
-    equals,
-    foretells,
-    IDLE,
-    left_over,
-    probability,
-    signs_of,
-    surprising,
-)
+from tendon_ros.diagnose.judge import chance, equals, left_over, signs_of, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
@@ -38,7 +29,7 @@ from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
-from tendon_ros.identify.driving import as_recorded, drives
+from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.model.instrument import Instrument
 
 Report = Callable[[str, float], None]
@@ -100,10 +91,7 @@ def diagnose(
         )
         for k, cause in enumerate(found.final.model.causes)
     )
-    chances = [
-        probability(w.signs) if foretells(ready, found, k) else min(IDLE, probability(w.signs))
-        for k, w in enumerate(weighed)
-    ]
+    chances = [chance(ready, found, k, w.signs) for k, w in enumerate(weighed)]
     accepted = [k for k, p in enumerate(chances) if p >= NAMED]
     model = found.final.model
     for k in reversed([k for k, p in enumerate(chances) if p < NAMED]):
@@ -138,7 +126,7 @@ def diagnose(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
         next_experiment=ahead,
-        left_out=(*intake.left_out, *_by_torque(instrument)),
+        left_out=(*intake.left_out, *said_of_torque(instrument)),
     )
     evidence = Evidence(
         instrument=instrument.name,
@@ -174,14 +162,3 @@ def _searched(
         ready = ready.moved(KEPT // 2)
         found = Search(ready.problem, candidates, jobs, report).run()
     return ready, found
-
-
-def _by_torque(instrument: Instrument) -> list[str]:
-    """Say which motors had no position to drive the model with."""
-    motors = [d.motor for d in drives(instrument) if d.by_torque]
-    if not motors:
-        return []
-    return [
-        f'the position of {listed(motors)} was not recorded: the model is driven with the torque '
-        'instead, and what it gets wrong adds up; record the position where there is an encoder'
-    ]

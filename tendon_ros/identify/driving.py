@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container
 from dataclasses import dataclass, replace
 
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.model.instrument import Instrument, Sensor
 
 
@@ -88,3 +88,19 @@ def as_recorded(instrument: Instrument, channels: Container[str]) -> Instrument:
     told = {s.of for s in instrument.sensors if s.kind == 'motor_torque' and s.channel in channels}
     gone = {sensor for motor, sensor in unseen if motor in told}
     return replace(instrument, sensors=tuple(s for s in instrument.sensors if s.name not in gone))
+
+
+def said_of_torque(instrument: Instrument) -> list[str]:
+    """
+    Say which motors had no position to drive the model with.
+
+    :param instrument: as it was recorded.
+    :return: a sentence, if there are any.
+    """
+    motors = [d.motor for d in drives(instrument) if d.by_torque]
+    if not motors:
+        return []
+    return [
+        f'the position of {listed(motors)} was not recorded: the model is driven with the torque '
+        'instead, and what it gets wrong adds up; record the position where there is an encoder'
+    ]

@@ -115,7 +115,7 @@ class Rollouts:
         :return: angles [rad] by pulley.
         """
         base = self._base[0]
-        last = self._rolled(0, ()).angle[-1]
+        last = self._rolled(0, ())[0].angle[-1]
         return {name: float(last[base.index(name)]) for name in base.inner}
 
     def states(self, uses: Sequence[Sequence[EffectUse]]) -> list[Rows]:
@@ -126,31 +126,34 @@ class Rollouts:
         :return: one a segment.
         :raises SimulationError: where the model diverges.
         """
-        return [self._rolled(n, own) for n, own in enumerate(uses)]
+        return [self._rolled(n, own)[0] for n, own in enumerate(uses)]
 
-    def _rolled(self, n: int, uses: Sequence[EffectUse]) -> Rows:
+    def _rolled(self, n: int, uses: Sequence[EffectUse]) -> tuple[Rows, Numbers]:
+        """Return what the model does along a segment, and its numbers with all effects."""
         segment = self.segments[n]
         base = self._base[n]
         instrument = replace(base, effects=(*base.effects, *uses))
-        return predict(
+        numbers = modified(instrument)
+        rows = predict(
             instrument,
-            true_motion(instrument, modified(instrument), segment),
+            true_motion(instrument, numbers, segment),
             segment.prescribed,
             len(segment.time) - 1,
             pushed=segment.pushed,
             tolerance=TOLERANCE,
             pose=segment.pose,
         )
+        return rows, numbers
 
     def _one(self, task: tuple[int, Sequence[EffectUse]]) -> FloatArray:
         n, uses = task
         segment = self.segments[n]
         try:
-            rows = self._rolled(n, uses)
+            rows, numbers = self._rolled(n, uses)
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
-        return _as_reported(rows.instrument, segment, found, self._usual)
+        return _as_reported(rows.instrument, numbers, segment, found, self._usual)
 
 
 def modified(instrument: Instrument) -> Numbers:
@@ -210,6 +213,7 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
 
 def _as_reported(
     instrument: Instrument,
+    numbers: Numbers,
     segment: Segment,
     found: FloatArray,
     usual: Mapping[str, float],
@@ -221,7 +225,6 @@ def _as_reported(
     torque stands for the prediction, less what the motion asks beyond the limit. What is cut off
     is the torque without its noise: a limit that took the noise away would always explain some.
     """
-    numbers = modified(instrument)
     names = list(instrument.motor_names)
     for row, measured in enumerate(segment.measured):
         if measured.sensor.kind != 'motor_torque':
