@@ -17,8 +17,8 @@ class Parameter:
     says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
     recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
     ``level`` (of the motor's torque), ``share`` (all or nothing); what it is to the size beside
-    it: its ``phase``, the angle at which it comes to ``rest``; or ``shape``: a shape in spite of
-    its neutral value.
+    it: its ``phase``, the angle at which it comes to ``rest``; ``shape``: a shape in spite of its
+    neutral value; or ``guess``: fitted only where an instrument file says that it is a guess.
     """
 
     name: str
@@ -29,7 +29,7 @@ class Parameter:
     high: float
     typical: float
     search: Literal[
-        '', 'instant', 'duration', 'cycles', 'level', 'share', 'phase', 'rest', 'shape'
+        '', 'instant', 'duration', 'cycles', 'level', 'share', 'phase', 'rest', 'shape', 'guess'
     ] = ''
 
     @property

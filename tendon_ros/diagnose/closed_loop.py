@@ -67,6 +67,9 @@ def closed_loop_gap(
             inside = channel.time >= segment.start
             time = channel.time[inside] - segment.start
             grid = before.control_period * np.arange(len(first[sensor.channel]))
+            own = [np.interp(time, grid, run[sensor.channel]) for run in (first, second)]
+            if not sensor.zeroed:
+                own = [row + np.mean(channel.value[inside] - row) for row in own]
             traces.append(
                 Trace(
                     recording=recording.name,
@@ -74,8 +77,8 @@ def closed_loop_gap(
                     unit=channel.unit,
                     time=time,
                     measured=channel.value[inside],
-                    before=np.interp(time, grid, first[sensor.channel]),
-                    after=np.interp(time, grid, second[sensor.channel]),
+                    before=own[0],
+                    after=own[1],
                     held_out=np.zeros(len(time), dtype=np.bool_),
                 )
             )

@@ -73,8 +73,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         a ripple without a period, a number of the file within its tolerance.
     """
     for t in problem.tolerances:
-        if (t.effect, t.place) == (candidate.effect, candidate.place):
-            [value] = values.values()
+        if t.is_moved_by(candidate):
+            value = values[t.parameter]
             return t.axis.low < value < t.axis.high
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them

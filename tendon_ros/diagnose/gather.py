@@ -102,7 +102,7 @@ def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
     """
     spread = deviations(problem, final)
     own = len(spread) - len(problem.tolerances)
-    owned = {(c.effect, c.place) for c in final.model.causes}
+    owned = problem.owned(final.model)
     return tuple(
         Moved(
             t.place,
@@ -111,8 +111,10 @@ def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
             (t.axis.value(z - 2.0 * s), t.axis.value(z + 2.0 * s)),
             t.axis.unit,
         )
-        for t, z, s in zip(problem.tolerances, final.model.moved, spread[own:], strict=True)
-        if (t.effect, t.place) not in owned
+        for t, z, s, still in zip(
+            problem.tolerances, final.model.moved, spread[own:], owned, strict=True
+        )
+        if not still
     )
 
 

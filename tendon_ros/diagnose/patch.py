@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.model.cable import hardened
 from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
 
 
@@ -44,9 +45,10 @@ def patched(
     for loop in instrument.loops:
         place = f'cable_{loop.name}'
         scale = moved.get((place, 'stiffness'), 1.0)
+        hardening = moved.get((place, 'hardening'), 1.0)
         own = loop.curve
-        if scale != 1.0:
-            old = curves[loop.curve]
+        if scale != 1.0 or hardening != 1.0:
+            old = hardened(curves[loop.curve], hardening)
             own = f'{old.name}_{loop.name}'
             curves[own] = Curve(own, old.elongation, tuple(scale * t for t in old.tension))
         tight = loop.pretension * moved.get((place, 'pretension'), 1.0)

@@ -6,11 +6,16 @@ is multiplied.
 
 Equation::
 
-    t(x) = scale * t_file(x) for both cables of the loop
+    t(x) = scale * t_file(x_s + (x_e - x_s) * ((x - x_s) / (x_e - x_s))^hardening)
 
-The pretension, a force, is not scaled with it: see the effect ``pretension``.
+for both cables of the loop, x_s and x_e where the file's curve starts and ends. The pretension, a
+force, is not scaled with it: see the effect ``pretension``.
 
-Source: Hooke's law of a cable of another section or length.
+A hardening other than one is no cause by itself: it is found where the file calls the shape of the
+curve a guess.
+
+Source: Hooke's law of a cable of another section or length; ropes stiffen while their strands
+settle, which a power of the elongation follows.
 """
 
 from __future__ import annotations
@@ -19,9 +24,10 @@ from tendon_ros.base.effect import Effect, Numbers
 from tendon_ros.base.parameter import Parameter
 
 
-def modify(numbers: Numbers, index: int, scale: float) -> None:
-    """Scale the tension curve of a loop."""
+def modify(numbers: Numbers, index: int, scale: float, hardening: float) -> None:
+    """Scale and bend the tension curve of a loop."""
     numbers['scale'][index] *= scale
+    numbers['hardening'][index] *= hardening
 
 
 EFFECT = Effect(
@@ -37,6 +43,16 @@ EFFECT = Effect(
             low=0.05,
             high=20.0,
             typical=0.8,
+        ),
+        Parameter(
+            name='hardening',
+            unit='1',
+            meaning='exponent on the elongation, from where the curve starts to where it ends',
+            neutral=1.0,
+            low=0.7,
+            high=4.0,
+            typical=1.5,
+            search='guess',
         ),
     ),
     modify=modify,

@@ -30,8 +30,8 @@ class Candidate:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The effect's parameters."""
-        return find(self.effect).parameters
+        """The effect's parameters, but for what only a file's guess opens."""
+        return tuple(p for p in find(self.effect).parameters if p.search != 'guess')
 
     @property
     def instants(self) -> tuple[Parameter, ...]:

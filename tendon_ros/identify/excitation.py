@@ -76,7 +76,7 @@ def separating(
     contacts = [contact_place(instrument, c) for c in instrument.contacts]
     movable = [
         *tolerances(instrument),
-        *(Tolerance('contact_position', place, 'position', PLACED) for place in contacts),
+        *(Tolerance('contact_position', place, 'position', 'angle', PLACED) for place in contacts),
     ]
     rivals: dict[tuple[str, str, tuple[tuple[str, float], ...]], list[Pair]] = {}
     for (candidate, values), other in pairs:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, Values
 from tendon_ros.identify.driving import motor_channels
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
@@ -46,12 +45,6 @@ def _again(candidate: Candidate, values: Values) -> EffectUse:
         elif p.search == 'duration':
             found[p.name] = min(found[p.name], LASTING)
     return EffectUse(candidate.effect, candidate.place, found)
-
-
-def _moved(tolerance: Tolerance, z: float) -> EffectUse:
-    """Return a number of the file as the effect that moves it, by deviations."""
-    name = find(tolerance.effect).parameters[0].name
-    return EffectUse(tolerance.effect, tolerance.place, {name: tolerance.axis.value(z)})
 
 
 @dataclass(frozen=True)
@@ -100,12 +93,11 @@ class Trial:
         self._noise = np.sqrt(own**2 + shaken)
         self._signature = (((self._said - plain) / self._noise) ** 2).sum(axis=1)
         # the number of the file that the truth itself changes is no excuse for the other
-        at = (self._truth.effect, self._truth.place)
-        self._tolerances = [t for t in tolerances if (t.effect, t.place) != at]
+        self._tolerances = [t for t in tolerances if not t.is_moved_by(truth[0])]
         if not motion.against:
             self._tolerances = [t for t in self._tolerances if not t.effect.startswith('contact')]
         self._by_tolerance = np.array(
-            [self._predicted([self._truth, _moved(t, 1.0)]) - self._said for t in self._tolerances]
+            [self._predicted([self._truth, t.use(1.0)]) - self._said for t in self._tolerances]
         ).reshape(-1, *self._said.shape)
 
     def evidence(self, rival: Explanation | None) -> list[list[Evidence]]:
@@ -121,8 +113,7 @@ class Trial:
             left = self._said - self._predicted([])
             return [self._weighed(left, self._by_tolerance, self._tolerances, 0)]
         candidate = rival[0]
-        at = (candidate.effect, candidate.place)
-        kept = np.array([(t.effect, t.place) != at for t in self._tolerances], dtype=np.bool_)
+        kept = np.array([not t.is_moved_by(candidate) for t in self._tolerances], dtype=np.bool_)
         allowed = [t for t, keep in zip(self._tolerances, kept, strict=True) if keep]
         by_tolerance = self._by_tolerance[kept]
         coordinates = candidate.coordinates
@@ -160,7 +151,7 @@ class Trial:
         """Return what the channels say at a place of a rival's parameters and tolerances."""
         free = len(candidate.parameters)
         values = candidate.coordinates.values(x[:free].tolist())
-        moved = [_moved(t, float(z)) for t, z in zip(allowed, x[free:], strict=True) if z != 0.0]
+        moved = [t.use(float(z)) for t, z in zip(allowed, x[free:], strict=True) if z != 0.0]
         return self._predicted([EffectUse(candidate.effect, candidate.place, values), *moved])
 
     def _weighed(

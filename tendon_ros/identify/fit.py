@@ -203,8 +203,7 @@ class Problem(Residuals):
         prior = self.prior(model)
         own = len(axes) - len(self.tolerances)
         # a tolerance that a cause owns does not move
-        owned = {(c.effect, c.place) for c in model.causes}
-        still = np.array([False] * own + [(t.effect, t.place) in owned for t in self.tolerances])
+        still = np.array([False] * own + self.owned(model))
         x = self.pack(model)
         x[still] = 0.0
         x = np.clip(x, bounds[:, 0], bounds[:, 1])
@@ -267,9 +266,10 @@ class Problem(Residuals):
         :return: columns, shape (samples,) each; those of tolerances that a cause stands for are
             left out.
         """
-        causes = {(c.effect, c.place) for c in fit.model.causes}
         owned = {
-            f'{t.place}.{t.quantity}' for t in self.tolerances if (t.effect, t.place) in causes
+            f'{t.place}.{t.quantity}'
+            for t, still in zip(self.tolerances, self.owned(fit.model), strict=True)
+            if still
         }
         return {
             label: fit.slope[:, j]

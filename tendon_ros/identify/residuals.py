@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.rollout import Rollouts
@@ -74,10 +73,7 @@ class Residuals:
         :param model: the model.
         :return: effects by segment.
         """
-        always = [
-            EffectUse(t.effect, t.place, {find(t.effect).parameters[0].name: t.axis.value(z)})
-            for t, z in self.moved(model)
-        ]
+        always = [t.use(z) for t, z in self.moved(model)]
         always += bristles(model)
         own = [cause.use(model.values(k)) for k, cause in enumerate(model.causes)]
         return [
@@ -92,12 +88,20 @@ class Residuals:
         :param model: the model.
         :return: each with its place on its axis.
         """
-        owned = {(c.effect, c.place) for c in model.causes}
         return [
             (t, float(z))
-            for t, z in zip(self.tolerances, model.moved, strict=True)
-            if z != 0.0 and (t.effect, t.place) not in owned
+            for t, z, owned in zip(self.tolerances, model.moved, self.owned(model), strict=True)
+            if z != 0.0 and not owned
         ]
+
+    def owned(self, model: Model) -> list[bool]:
+        """
+        Return which tolerances do not move, since a cause moves the same number.
+
+        :param model: the model.
+        :return: one a tolerance.
+        """
+        return [any(t.is_moved_by(c) for c in model.causes) for t in self.tolerances]
 
     def left(self, model: Model) -> FloatArray:
         """

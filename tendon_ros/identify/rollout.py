@@ -153,7 +153,8 @@ class Rollouts:
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
-        return _as_reported(rows.instrument, numbers, segment, found, self._usual)
+        reported = _as_reported(rows.instrument, numbers, segment, found, self._usual)
+        return _zeroed(segment, reported)
 
 
 def modified(instrument: Instrument) -> Numbers:
@@ -209,6 +210,14 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
             value[row] = np.clip(given, -limit, limit)
             slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
     return Signals(value, slope, start, motion.step)
+
+
+def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:
+    """Return the predictions, those of angles without a zero as near as can be to the readings."""
+    for row, measured in zip(found, segment.measured, strict=True):
+        if not measured.sensor.zeroed:
+            row += np.nanmean(measured.value - row)
+    return found
 
 
 def _as_reported(

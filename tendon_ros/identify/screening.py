@@ -85,7 +85,7 @@ class Screen:
         self._pull = self._slope.T @ fit.left
         tolerances = problem.tolerances
         first = fit.slope.shape[1] - len(tolerances)
-        self._own = {(t.effect, t.place): first + n for n, t in enumerate(tolerances)}
+        self._numbers = [(t, first + n) for n, t in enumerate(tolerances)]
         self._beside = Beside(problem, fit)
         #: what is left once what moves already has moved as far as it likes, shape (samples,)
         self.left: FloatArray = fit.left - self._slope @ (self._inverse @ self._pull)
@@ -122,7 +122,7 @@ class Screen:
         changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
         if changes is None:
             return proposal
-        own = self._own.get((proposal.candidate.effect, proposal.candidate.place))
+        own = self._own(proposal.candidate)
         gain, steps = self._beside.best(changes, self._reach(proposal), own)
         if not steps.any():
             return replace(proposal, gain=0.0)
@@ -163,9 +163,13 @@ class Screen:
         z = proposal.resized(steps.tolist())
         return replace(proposal, z=z, gain=gain, seen=seen, own=kept)
 
+    def _own(self, candidate: Candidate) -> int | None:
+        """Return which unknown of the fit is the very number that a candidate moves."""
+        return next((j for t, j in self._numbers if t.is_moved_by(candidate)), None)
+
     def _base(self, candidate: Candidate) -> float:
         """Return where a number of the file has moved to already, as its effect says it."""
-        j = self._own.get((candidate.effect, candidate.place))
+        j = self._own(candidate)
         if j is None:
             return 0.0
         n = j - self.fit.slope.shape[1]
@@ -194,7 +198,7 @@ class Screen:
         """Return the part of changes that tolerances and causes do not imitate."""
         inverse = self._inverse
         # beyond its tolerance, a number is the cause itself
-        j = self._own.get((candidate.effect, candidate.place))
+        j = self._own(candidate)
         if j is not None and self._free[j]:
             inverse = inverse - np.outer(inverse[:, j], inverse[:, j]) / inverse[j, j]
         own: FloatArray = changes - self._slope @ (inverse @ (self._slope.T @ changes))

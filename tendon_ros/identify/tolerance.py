@@ -12,8 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
+from tendon_ros.base.parameter import Parameter
+from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
-from tendon_ros.model.instrument import contact_place, Instrument
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument import contact_place, EffectUse, Instrument
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
 MEASURED = 0.02
@@ -30,12 +33,33 @@ class Tolerance:
     effect: str
     place: str
     quantity: str
+    parameter: str
     axis: Axis
 
     @property
     def guessed(self) -> bool:
         """Whether the file only guesses the number, so that it may end anywhere."""
         return self.axis.spread != 1.0
+
+    def use(self, z: float) -> EffectUse:
+        """
+        Return the effect that moves the number.
+
+        :param z: its place on the axis.
+        :return: the effect in use.
+        """
+        return EffectUse(self.effect, self.place, {self.parameter: self.axis.value(z)})
+
+    def is_moved_by(self, cause: Candidate) -> bool:
+        """
+        Return whether a cause, where there is one, moves this very number.
+
+        :param cause: the cause.
+        :return: whether.
+        """
+        return (cause.effect, cause.place) == (self.effect, self.place) and any(
+            p.name == self.parameter for p in cause.parameters
+        )
 
 
 def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
@@ -51,20 +75,24 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
     found = []
     for effect, place, quantity, usual in _factors(instrument):
         spread = stated.get(f'{place}.{quantity}', usual)
+        # a number of the file is moved by its effect's parameter of that name, or by its first
+        known = {p.name: p for p in find(effect).parameters}
+        parameter = known.get(quantity, find(effect).parameters[0])
         if spread > 0.0:
-            found.append(Tolerance(effect, place, quantity, _factor(quantity, spread)))
+            factor = _factor(quantity, spread, parameter)
+            found.append(Tolerance(effect, place, quantity, parameter.name, factor))
     for pulley in instrument.pulleys:
         place = f'pulley_{pulley.name}'
         spread = stated.get(f'{place}.damping', DAMPING)
         axis = _addition('damping', 'N m s/rad', pulley.damping, spread, SOME_DAMPING)
         if axis is not None:
-            found.append(Tolerance('viscous_friction', place, 'damping', axis))
+            found.append(Tolerance('viscous_friction', place, 'damping', 'damping', axis))
     for contact in instrument.contacts:
         place = contact_place(instrument, contact)
         spread = stated.get(f'{place}.position', 0.0)
         axis = _addition('position', 'rad', 1.0, spread, 0.05)
         if axis is not None:
-            found.append(Tolerance('contact_position', place, 'position', axis))
+            found.append(Tolerance('contact_position', place, 'position', 'angle', axis))
     return tuple(found)
 
 
@@ -76,6 +104,7 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
         if loop.pretension > 0.0:
             yield 'pretension', f'cable_{loop.name}', 'pretension', MEASURED
         yield 'cable_stiffness', f'cable_{loop.name}', 'stiffness', MEASURED
+        yield 'cable_stiffness', f'cable_{loop.name}', 'hardening', 0.0
     for coupling in instrument.couplings:
         yield 'cable_stiffness', f'coupling_{coupling.name}', 'stiffness', MEASURED
     for motor in instrument.motors:
@@ -84,10 +113,14 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
         yield 'contact_stiffness', contact_place(instrument, contact), 'stiffness', MEASURED
 
 
-def _factor(quantity: str, spread: float) -> Axis:
+def _factor(quantity: str, spread: float, parameter: Parameter) -> Axis:
     """Return the axis of a factor about one."""
     if math.isinf(spread):
-        return Axis(quantity, '1', 0.02, 50.0, 1.0, 0.5, log=True, spread=REACH)
+        if parameter.search == 'guess':  # a shape, within what shapes there are
+            low, high, scale = parameter.low, parameter.high, 0.25
+        else:
+            low, high, scale = 0.02, 50.0, 0.5
+        return Axis(quantity, '1', low, high, 1.0, scale, log=True, spread=REACH)
     return Axis(quantity, '1', max(0.02, 1.0 - REACH * spread), 1.0 + REACH * spread, 1.0, spread,
                 spread=1.0)  # fmt: skip
 

@@ -23,6 +23,9 @@ FloatArray = NDArray[np.float64]
 #: most cells of a resampled curve
 MOST_CELLS = 512
 
+#: cells of a curve that was bent
+BENT_CELLS = 32
+
 #: how far the resampled curve may be from the one through the points, relative to the tension
 CLOSE = 1e-4
 
@@ -105,6 +108,24 @@ def _evaluated(start: float, rate: float, cubic: FloatArray, x: FloatArray) -> F
     slope = c1 + inside * (2.0 * c2 + 3.0 * inside * c3)
     value: FloatArray = c0 + inside * (c1 + inside * (c2 + inside * c3)) + beyond * slope
     return value
+
+
+@lru_cache(maxsize=64)
+def hardened(curve: Curve, exponent: float) -> Curve:
+    """
+    Return a curve bent by a power of the elongation: its ends stay where they are.
+
+    :param curve: the points.
+    :param exponent: on the elongation from start to end; one changes nothing.
+    :return: the bent curve.
+    """
+    if exponent == 1.0:
+        return curve
+    start, end = curve.elongation[0], curve.elongation[-1]
+    part = np.linspace(0.0, 1.0, BENT_CELLS + 1)
+    tension = tension_at(curve, start + (end - start) * part**exponent)
+    elongation = tuple(float(x) for x in start + (end - start) * part)
+    return Curve(curve.name, elongation, tuple(float(t) for t in tension))
 
 
 @lru_cache(maxsize=64)

@@ -36,7 +36,7 @@ from tendon_ros.model.instrument_schema import (
     Section,
 )
 from tendon_ros.model.quantity import parsed
-from tendon_ros.model.tolerance import read_stated, Stated, without_tolerance
+from tendon_ros.model.tolerance import GUESSED, read_stated, Stated, without_tolerance
 
 #: unit of a contact's damping, by its law
 DAMPING_UNITS = {'hunt_crossley': 's/m', 'spring_damper': 'N*s/m'}
@@ -238,7 +238,8 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
         )
     for name, encoder in file.joint_sensors.items():
         position = channel_name('pulley', f'pulley_{name}', 'position')
-        yield _angle_sensor(name, position, 1.0, encoder)
+        plain = _angle_sensor(name, position, 1.0, encoder)
+        yield replace(plain, zeroed=encoder.zero != GUESSED)
     driven = {motor.pulley or name for name, motor in file.motors.items()}
     for name, speed in file.speed_sensors.items():
         group = 'actuator' if name in driven else 'pulley'

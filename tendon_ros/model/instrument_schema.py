@@ -92,6 +92,7 @@ class LoopSection(Section):
     pretension: Annotated[Stated, stated('N', 'not negative')]
     damping: Annotated[Stated, stated('N*s/m', 'not negative')] = Stated(0.0)
     stiffness: Factor = Stated(1.0)  # on the tensions of its curve
+    hardening: Factor = Stated(1.0)  # exponent on the elongations of its curve
     torque_sign: dict[Name, Sign] = {}
 
 
@@ -129,6 +130,12 @@ class EncoderSection(Section):
         if self.counts is not None and self.resolution:
             raise ValueError('has both counts and resolution; keep one of them')
         return self
+
+
+class JointSensorSection(EncoderSection):
+    """An angle sensor on a pulley without a motor; its zero may be another in every recording."""
+
+    zero: Literal['', 'guessed'] = ''
 
 
 class TorqueSensorSection(Section):
@@ -213,7 +220,7 @@ class InstrumentSection(Section):
     couplings: dict[Name, CouplingSection] = {}
     motors: dict[Name, MotorSection]
     contacts: dict[Name, ContactSection] = {}
-    joint_sensors: dict[Name, EncoderSection] = {}
+    joint_sensors: dict[Name, JointSensorSection] = {}
     speed_sensors: dict[Name, SpeedSensorSection] = {}
     shaft_sensors: dict[Name, ShaftSensorSection] = {}
     load_cell: LoadCellSection | None = None

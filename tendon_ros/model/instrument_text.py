@@ -22,7 +22,7 @@ from tendon_ros.model.instrument import (
 )
 from tendon_ros.model.instrument_build import DAMPING_UNITS
 from tendon_ros.model.quantity import column_text, readable_unit, written
-from tendon_ros.model.tolerance import written_stated, written_tolerance
+from tendon_ros.model.tolerance import GUESSED, written_stated, written_tolerance
 
 Document = dict[str, Any]
 
@@ -84,7 +84,7 @@ def _document(one: Instrument) -> Document:
             c.name: _contact(c, _Known(one, contact_place(one, c))) for c in one.contacts
         },
         'joint_sensors': {
-            s.of: _encoder(s, 1.0)
+            s.of: _encoder(s, 1.0) | ({} if s.zeroed else {'zero': GUESSED})
             for s in one.sensors
             if s.kind == 'angle' and s.of not in one.driven
         },
@@ -148,6 +148,7 @@ def _loop(loop: Loop, known: _Known) -> Document:
         **known.number('pretension', loop.pretension, 'N'),
         **known.number('damping', loop.damping, 'N*s/m', 0.0),
         **known.factor('stiffness'),
+        **known.factor('hardening'),
     }
     if loop.torque_sign:
         document['torque_sign'] = {p: int(sign) for p, sign in loop.torque_sign.items()}

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from tendon_ros.base.effect import HOOKS
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.effects import catalogue, find
-from tendon_ros.model.cable import elongation_at, uniform_cubic
-from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.cable import elongation_at, hardened, uniform_cubic
+from tendon_ros.model.instrument import Curve, EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
 from tendon_ros.model.structure import RING, Structure, structure_of
 
@@ -249,14 +249,14 @@ class _Packer:
         one = self.instrument
         at = self.structure
         curves = {curve.name: curve for curve in one.curves}
-        placed: dict[str, tuple[int, int, float, float]] = {}
+        placed: dict[Curve, tuple[int, int, float, float]] = {}
         for k, loop in enumerate(one.loops):
-            curve = curves[loop.curve]
-            if curve.name not in placed:
+            curve = hardened(curves[loop.curve], float(self.numbers['hardening'][k]))
+            if curve not in placed:
                 start, rate, cubic = uniform_cubic(curve)
-                placed[curve.name] = (at.length('m') + len(tail), len(cubic), start, rate)
+                placed[curve] = (at.length('m') + len(tail), len(cubic), start, rate)
                 tail += cubic.ravel().tolist()
-            self._point(m, d, k, placed[curve.name], 0.0)
+            self._point(m, d, k, placed[curve], 0.0)
             scale = self.numbers['scale'][k]
             m[at['PRELOAD'] + k] = elongation_at(curve, self.numbers['pretension'][k] / scale)
         for c, coupling in enumerate(one.couplings):

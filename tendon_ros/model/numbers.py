@@ -36,6 +36,7 @@ class Numbers:
                 [loop.pretension for loop in one.loops] + [0.0] * len(one.couplings)
             ),
             'scale': np.ones(len(one.links)),
+            'hardening': np.ones(len(one.links)),
             'loop_damping': np.array([row.damping for row in one.links]),
             'play': np.zeros(len(one.links)),
             'contact_stiffness': np.array([c.stiffness for c in one.contacts]),

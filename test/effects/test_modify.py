@@ -13,8 +13,8 @@ PLACES = [(e, kind) for e in MODIFIERS for kind in e.kinds]
 #: arrays that belong to each kind of place
 OWN = {
     'pulley': {'inertia', 'damping', 'breakaway'},
-    'cable': {'pretension', 'scale', 'loop_damping', 'play'},
-    'coupling': {'scale', 'loop_damping', 'play'},
+    'cable': {'pretension', 'scale', 'hardening', 'loop_damping', 'play'},
+    'coupling': {'scale', 'hardening', 'loop_damping', 'play'},
     'motor': {'motor_gain', 'motor_bias', 'motor_limit', 'play'},
     'sensor': {'sensor_gain', 'sensor_offset', 'sensor_delay', 'sensor_rectified'},
     'contact': {'contact_stiffness', 'contact_damping', 'contact_position'},
@@ -34,6 +34,7 @@ class Numbers:
             'radius': np.array([[0.03, -0.02, 0.0], [0.0, 0.03, -0.03], [-35.0, 0.0, 1.0]]),
             'pretension': np.array([5.0, 6.0, 0.0]),
             'scale': np.array([1.0, 1.0, 1.0]),
+            'hardening': np.array([1.0, 1.0, 1.0]),
             'loop_damping': np.array([0.0, 1.0, 2.0]),
             'play': np.array([0.0, 1e-5, 2e-5]),
             'motor_gain': np.array([1.0, 1.1]),
@@ -101,7 +102,13 @@ def test_only_the_place_is_changed(effect, kind):
             {('breakaway', 1): 0.004},
         ),
         ('pretension', 'cable', 1, {'scale': 0.5}, {('pretension', 1): 3.0}),
-        ('cable_stiffness', 'cable', 0, {'scale': 0.8}, {('scale', 0): 0.8}),
+        (
+            'cable_stiffness',
+            'cable',
+            0,
+            {'scale': 0.8, 'hardening': 2.0},
+            {('scale', 0): 0.8, ('hardening', 0): 2.0},
+        ),
         ('backlash', 'coupling', 2, {'angle': 0.01, 'held': 0.0}, {('play', 2): 0.01002}),
         # motor 1 turns pulley 0, on which loop 0 (radius 0.03) and coupling 2 (ratio -35) act
         (

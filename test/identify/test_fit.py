@@ -1,6 +1,7 @@
 """Fits: what was put in comes out, whichever effect, controller or sampling."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -112,3 +113,14 @@ def test_unknowns_survive_packing(sound_problem):
     assert smaller.values(0) == again.values(1)
     # without dry friction there is nothing to build up over an angle
     assert not smaller.bristle
+
+
+def test_a_guessed_shape_of_the_curve_is_found(bench, measured_on):
+    guessed = {'cable_L3.hardening': math.inf}
+    run = measured_on(bench, ('cable_stiffness', 'cable_L3', {'scale': 1.0, 'hardening': 1.4}))
+    problem = prepared([run], replace(bench, tolerances=guessed)).problem
+    before = float(np.mean(problem.left(problem.empty) ** 2))
+    fit = problem.fitted(problem.empty, rounds=20)
+    found = {(t.place, t.quantity): t.axis.value(z) for t, z in problem.moved(fit.model)}
+    assert found['cable_L3', 'hardening'] == pytest.approx(1.4, abs=0.05)
+    assert fit.cost / len(fit.left) < 1.3 < before

@@ -60,3 +60,10 @@ def test_what_is_impossible_is_infinitely_bad_and_no_crash(sound_problem):
     [row] = sound_problem.rollouts.predicted([[far, mad]])
     assert row.shape == sound_problem.rollouts.measured[0].shape
     assert not np.isnan(row).any()
+
+
+def test_a_sensor_without_a_zero_tells_no_offset(bench, measured_on):
+    run = measured_on(bench, ('encoder_offset', 'encoder_3', {'angle': 0.02}))
+    sensors = tuple(replace(s, zeroed=s.name != 'encoder_3') for s in bench.sensors)
+    assert misfit(prepared([run], bench).problem) > 10.0
+    assert misfit(prepared([run], replace(bench, sensors=sensors)).problem) < 1.2

@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from tendon_ros.base.errors import InstrumentError
 from tendon_ros.base.resources import config_path
-from tendon_ros.model.cable import elongation_at, tension_at, uniform_cubic
+from tendon_ros.model.cable import elongation_at, hardened, tension_at, uniform_cubic
 from tendon_ros.model.cable_identification import (
     BlockedTip,
     curve_from_table,
@@ -185,3 +185,18 @@ def test_bad_tables_are_named(tmp_path, text, said):
         curve_from_table(file)
     assert said in str(error.value)
     assert str(error.value).startswith(f'{file}: ')
+
+
+@pytest.mark.parametrize('exponent', [0.8, 2.0, 4.0])
+def test_a_hardened_curve_is_a_power_of_the_elongation(exponent):
+    straight = Curve('straight', (0.0, 5e-3), (0.0, 200.0))
+    x = np.linspace(1e-3, 5e-3, 41)
+    wanted = 200.0 * (x / 5e-3) ** exponent
+    np.testing.assert_allclose(tension_at(hardened(straight, exponent), x), wanted, rtol=5e-3)
+
+
+def test_hardening_of_one_is_the_curve_itself(curve):
+    assert hardened(curve, 1.0) == curve
+    bent = hardened(curve, 1.7)
+    assert (bent.elongation[0], bent.elongation[-1]) == (curve.elongation[0], curve.elongation[-1])
+    assert (bent.tension[0], bent.tension[-1]) == (curve.tension[0], curve.tension[-1])
