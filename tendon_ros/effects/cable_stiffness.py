@@ -40,8 +40,8 @@ EFFECT = Effect(
             unit='1',
             meaning='factor on the tension curve',
             neutral=1.0,
-            low=0.05,
-            high=20.0,
+            low=0.02,
+            high=50.0,
             typical=0.8,
         ),
         Parameter(

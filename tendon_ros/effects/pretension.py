@@ -34,7 +34,7 @@ EFFECT = Effect(
             meaning='factor on the pretension of the file',
             neutral=1.0,
             low=0.0,
-            high=5.0,
+            high=50.0,
             typical=0.7,
         ),
     ),

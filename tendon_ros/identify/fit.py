@@ -27,6 +27,7 @@ REMEMBERED = 0.4
 #: [s] that begin and end of events are tried at, and how often
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
 MOVES = 2
+FAINT = 0.1  # of the noise: changes below are mostly chance
 FAR = 0.3  # on its axis: what a guess may move until its derivative is taken anew
 CAREFUL = 1e-3  # accuracy from which on they are
 
@@ -122,13 +123,32 @@ class Problem(Residuals):
             step = 0.02 * max(1.0, abs(x[j])) if not axes[j].log else 0.05
             if axes[j].spread == 1.0:
                 step = 0.5
-            if x[j] + step > high:
-                step = -step
+            found[:, n] = self._change(model, left, j, step if x[j] + step <= high else -step)
+        return found
+
+    def _change(self, model: Model, left: FloatArray, j: int, step: float) -> FloatArray:
+        """
+        Return the derivative of what is left by one unknown, from a step along its axis.
+
+        Where dry friction sticks a hair earlier or later is chance: a step that changes hardly
+        more than that is made longer.
+        """
+        x = self.pack(model)
+        low, high = self.axes(model)[j].ends
+        while True:
             moved = x.copy()
             moved[j] += step
-            change = (self.left(self.unpack(model, moved)) - left) / step
-            found[:, n] = change if np.isfinite(change).all() else 0.0
-        return found
+            change = self.left(self.unpack(model, moved)) - left
+            if not np.isfinite(change).all():
+                return np.zeros(len(left))
+            longer = 4.0 * step
+            if (
+                float(change @ change) > FAINT**2 * len(left)
+                or abs(longer) > 0.5
+                or not low <= x[j] + longer <= high
+            ):
+                return np.asarray(change / step)
+            step = longer
 
     def fitted(
         self,

@@ -9,7 +9,7 @@ else, and never a cause.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 from tendon_ros.base.parameter import Parameter
@@ -86,6 +86,7 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
         spread = stated.get(f'{place}.damping', DAMPING)
         axis = _addition('damping', 'N m s/rad', pulley.damping, spread, SOME_DAMPING)
         if axis is not None:
+            axis = replace(axis, low=max(axis.low, -pulley.damping))  # or it would drive
             found.append(Tolerance('viscous_friction', place, 'damping', 'damping', axis))
     for contact in instrument.contacts:
         place = contact_place(instrument, contact)
@@ -115,14 +116,13 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
 
 def _factor(quantity: str, spread: float, parameter: Parameter) -> Axis:
     """Return the axis of a factor about one."""
+    # beyond what the effect can be, nothing can be computed
+    low, high = max(parameter.low, 0.02), min(parameter.high, 50.0)
     if math.isinf(spread):
-        if parameter.search == 'guess':  # a shape, within what shapes there are
-            low, high, scale = parameter.low, parameter.high, 0.25
-        else:
-            low, high, scale = 0.02, 50.0, 0.5
+        scale = 0.25 if parameter.search == 'guess' else 0.5
         return Axis(quantity, '1', low, high, 1.0, scale, log=True, spread=REACH)
-    return Axis(quantity, '1', max(0.02, 1.0 - REACH * spread), 1.0 + REACH * spread, 1.0, spread,
-                spread=1.0)  # fmt: skip
+    low, high = max(low, 1.0 - REACH * spread), min(high, 1.0 + REACH * spread)
+    return Axis(quantity, '1', low, high, 1.0, spread, spread=1.0)
 
 
 def _addition(quantity: str, unit: str, nominal: float, spread: float, some: float) -> Axis | None:
