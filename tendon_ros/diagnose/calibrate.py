@@ -19,7 +19,7 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intervals import parameter_intervals
-from tendon_ros.diagnose.patch import patched
+from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
@@ -119,15 +119,18 @@ def calibrate(
         beginnings.append(Beginning(seconds, _misfit(ready.held, model)))
     report('done', 1.0)
     misfit = _misfit(ready.held, final.model)
+    left = gaps(ready.held, start, final.model)
     enough = [
         b.seconds
         for n, b in enumerate(beginnings)
         if all(later.misfit < AS_GOOD * misfit for later in beginnings[n:])
     ]
     return Calibration(
-        instrument=patched(ready.problem, final.model, replace(plain, sensors=instrument.sensors)),
+        instrument=doubted(
+            patched(ready.problem, final.model, replace(plain, sensors=instrument.sensors)), left
+        ),
         parameters=tuple(_carried(ready.problem, final, fitted)),
-        gap=gaps(ready.held, start, final.model),
+        gap=left,
         misfit=(_misfit(ready.held, start), misfit),
         beginnings=tuple(beginnings),
         needed=enough[0] if enough else None,

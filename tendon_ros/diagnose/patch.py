@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+import math
 
+from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.cable import hardened
@@ -83,6 +86,22 @@ def patched(
         contacts=contacts,
         effects=(*instrument.effects, *gains, *accepted, *bristles(model)),
     )
+
+
+def doubted(instrument: Instrument, gaps: Sequence[ChannelGap]) -> Instrument:
+    """
+    Return an instrument that states how far it is off: estimates rest on it.
+
+    :param instrument: as it was fitted.
+    :param gaps: of its channels, on what no fit has seen.
+    :return: with what is left beyond noise as the misfit of each sensor.
+    """
+    left = {g.channel: math.sqrt(max(0.0, g.after**2 - g.noise_floor**2)) for g in gaps}
+    sensors = tuple(
+        replace(s, misfit=float(f'{left[s.channel]:.3g}')) if s.channel in left else s
+        for s in instrument.sensors
+    )
+    return replace(instrument, sensors=sensors)
 
 
 def _reaching(curve: Curve, tension: float) -> Curve:

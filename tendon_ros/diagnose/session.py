@@ -24,7 +24,7 @@ from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
-from tendon_ros.diagnose.patch import patched
+from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
@@ -107,7 +107,7 @@ def diagnose(
     places = whereabouts(ready, found, accepted, believed, left)
     beyond = left_over(left, form)
     channels = gaps(heard.held, heard.held.empty, final.model)
-    repaired = patched(heard.problem, final.model, given)
+    repaired = doubted(patched(heard.problem, final.model, given), channels)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]

@@ -87,6 +87,16 @@ def deviation(sensor: Sensor) -> float:
     return UNSTATED_ANGLE if sensor.kind == 'angle' else UNSTATED_TORQUE
 
 
+def doubt(sensor: Sensor) -> float:
+    """
+    Return how far a sensor and the model of the instrument may disagree.
+
+    :param sensor: the sensor.
+    :return: its deviation and what a diagnosis left unexplained, in the unit of the reading.
+    """
+    return float(np.hypot(deviation(sensor), sensor.misfit))
+
+
 def angle_channel(instrument: Instrument, pulley: str) -> str:
     """
     Return the name under which a pulley's angle is measured.

@@ -11,7 +11,7 @@ import numpy as np
 
 from tendon_ros.estimate.channels import (
     angle_channel,
-    deviation,
+    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -46,7 +46,7 @@ class ContactAngleObserver(Observer):
         self._runner = Runner(instrument, arrays, engine)
         self._statics = Statics(instrument, engine=engine)
         encoders = sensors_of(instrument, ('angle',))
-        self._sigma = np.array([deviation(encoders[name]) for name in self.needs])
+        self._sigma = np.array([doubt(encoders[name]) for name in self.needs])
         self._reset()
 
     def _reset(self) -> None:

@@ -14,7 +14,7 @@ from scipy.linalg import expm
 
 from tendon_ros.estimate.channels import (
     angle_channel,
-    deviation,
+    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -53,8 +53,8 @@ class KalmanObserver(Observer):
         self._efforts = tuple(f'actuator/pulley_{name}/effort' for name in driven)
         self.needs = (*self._positions, *self._efforts)
         known = sensors_of(instrument, ('angle', 'motor_torque'))
-        self._variance = np.array([deviation(known[name]) ** 2 for name in self._positions])
-        self._torque_variance = np.array([deviation(known[name]) ** 2 for name in self._efforts])
+        self._variance = np.array([doubt(known[name]) ** 2 for name in self._positions])
+        self._torque_variance = np.array([doubt(known[name]) ** 2 for name in self._efforts])
         free = without_contacts(instrument)
         everyone = {name: row for row, name in enumerate(instrument.pulley_names)}
         arrays = arrays_of(free, pushed=everyone)

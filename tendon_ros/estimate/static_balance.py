@@ -5,18 +5,23 @@ Each measurement gives the angles of some pulleys and some torques. Unknown are 
 and the operating force. The torques on every pulley must balance (the paper's (1)-(6) without
 inertia), and the measured torques must be met as well as their noise lets them: weighted least
 squares by Gauss-Newton, whose covariance is the stated uncertainty.
+
+While dry friction turns round, a hair of an angle decides how much of it acts, and torques tell
+little of the force. So the friction of each pulley is as uncertain as the angles make it, and the
+force is not expected to change faster than it can be told at the best of times.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import InstrumentError, listed, RecordingError
 from tendon_ros.estimate.channels import (
-    deviation,
+    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -37,6 +42,8 @@ PROMISE = 1e-6
 TRIES = 60
 #: velocities for the direction of friction are smoothed over this time [s]
 SMOOTHING = 0.02
+#: time in which the force may change by as much as it is uncertain at best [s]
+STEADY = 0.02
 #: prior deviation of an angle about the last one; keeps what no channel sees where it was [rad]
 WANDER = 1.0
 
@@ -84,7 +91,8 @@ class StaticBalanceObserver(Observer):
             )
         fixed = {i for _, i in self._angles}
         self._free = [i for i in range(len(instrument.pulleys)) if i not in fixed]
-        self._sigma_angle = np.array([deviation(known[name]) for name, _ in self._angles])
+        self._sigma_angle = np.array([doubt(known[name]) for name, _ in self._angles])
+        self._unsure_angle = float(self._sigma_angle.max())
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
         self._reset()
@@ -119,7 +127,7 @@ class StaticBalanceObserver(Observer):
         self._reading_sign = np.ones(len(self._torques))
         for n, (_, sensor) in enumerate(self._torques):
             row = len(self._balanced) + n
-            self._weight[row] = 1.0 / deviation(sensor)
+            self._weight[row] = 1.0 / doubt(sensor)
             if sensor.kind == 'motor_torque':  # what the motor gives balances all the rest
                 self._on_pulleys[row, motors[sensor.of]] = 1.0
             else:  # the sensor reads the torque that the loop or coupling puts on the pulley
@@ -139,6 +147,10 @@ class StaticBalanceObserver(Observer):
         self._angle = np.zeros(len(self._instrument.pulleys))
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._force = 0.0
+        self._spread = math.inf  # of the last force
+        self._best = math.inf  # spread that a single measurement left so far
+        self._expected = (0.0, math.inf)
+        self._rubbing = np.zeros(len(self._on_pulleys))
         self._begun = False
 
     def _update(self, measurement: Measurement, gap: float) -> Estimate:
@@ -152,20 +164,39 @@ class StaticBalanceObserver(Observer):
         # feed a noisy angle back through the damping
         self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
+        self._expected = (self._force, math.inf)
+        if moving and math.isfinite(self._spread):
+            drift = self._best * gap / STEADY
+            self._expected = (self._force, math.hypot(self._spread, drift))
         force, covariance = self._solve(angle, measurement)
         if moving:
             self._velocity = self._moved(angle)
+            rubbed = self._statics.at(angle, self._velocity).friction
             self._statics.carry(self._angle, angle, gap)
+            now = self._statics.at(angle, self._velocity).friction
+            self._doubt_friction(angle - self._angle, now, now - rubbed)
+            if np.any(self._rubbing > 0.0):  # it has turned round on the way: once more
+                force, covariance = self._solve(angle, measurement)
         self._angle = angle
         self._force = force
         self._begun = True
-        sigma = float(np.sqrt(max(covariance[-1, -1], 0.0)))
+        variance = max(float(covariance[-1, -1]), 1e-300)
+        alone = 1.0 / max(1.0 / variance - self._expected[1] ** -2, 1e-300)
+        self._best = min(self._best, math.sqrt(alone))
+        # what a model gets wrong does not average out
+        self._spread = max(math.sqrt(variance), self._best)
         values = {
             self._operating.channel: force,
-            f'{self._operating.channel}_std': sigma,
+            f'{self._operating.channel}_std': self._spread,
             **estimated_angles(self._instrument, angle),
         }
         return Estimate(measurement.stamp_ns, values)
+
+    def _doubt_friction(self, moved: FloatArray, friction: FloatArray, change: FloatArray) -> None:
+        """Set the uncertainty of each equation [N m] where friction is turning round."""
+        span = np.maximum(np.abs(moved), 1e-9)
+        unsure = np.abs(change) * np.minimum(self._unsure_angle / span, 1.0)
+        self._rubbing = self._on_pulleys @ np.minimum(unsure, 2.0 * np.abs(friction))
 
     def _moved(self, angle: FloatArray) -> FloatArray:
         """Return the smoothed velocities [rad/s] if the angles now are these."""
@@ -224,8 +255,12 @@ class StaticBalanceObserver(Observer):
         balance = self._statics.at(angle, self._moved(angle))
         residual, slope, by_fixed = self._equations(balance, force, measurement)
         prior = (angle[self._free] - start) / WANDER
-        residual = np.concatenate([residual, prior])
-        slope = np.vstack([slope, np.eye(len(self._free), len(self._free) + 1) / WANDER])
+        expected, spread = self._expected
+        residual = np.concatenate([residual, prior, [(force - expected) / spread]])
+        unknowns = len(self._free) + 1
+        weight = np.full(unknowns, 1.0 / WANDER)
+        weight[-1] = 1.0 / spread
+        slope = np.vstack([slope, np.diag(weight)])
         return float(residual @ residual), residual, slope, by_fixed
 
     def _equations(
@@ -243,5 +278,6 @@ class StaticBalanceObserver(Observer):
         slope = np.column_stack(
             [by_angle[:, self._free], self._on_pulleys @ self._operating.torque]
         )
-        weight = self._weight[:, None]
-        return residual * self._weight, slope * weight, by_angle[:, self._fixed] * weight
+        own = 1.0 / np.hypot(1.0 / self._weight, self._rubbing)
+        weight = own[:, None]
+        return residual * own, slope * weight, by_angle[:, self._fixed] * weight

@@ -135,8 +135,10 @@ class Sensor:
     ``of`` names what it measures (pulley, motor or contact; for loop_torque the pulley, with
     ``through`` the loop or coupling). ``resolution`` is one count, 0 for none; ``noise`` the
     standard deviation, used only when noise is asked for; both in the unit of the reading.
-    ``channel`` is the recording's channel. Where ``zeroed`` is false, the zero of an angle is
-    anyone's guess and another in every recording, as of an incremental encoder that is not homed.
+    ``misfit`` is what a diagnosis left unexplained of it, the standard deviation of what is no
+    noise; estimates rest on it. ``channel`` is the recording's channel. Where ``zeroed`` is false,
+    the zero of an angle is anyone's guess and another in every recording, as of an incremental
+    encoder that is not homed.
     """
 
     name: str
@@ -146,6 +148,7 @@ class Sensor:
     through: str = ''
     resolution: float = 0.0
     noise: float = 0.0
+    misfit: float = 0.0
     zeroed: bool = True
 
 

@@ -220,6 +220,7 @@ def _angle_sensor(name: str, channel: str, gear: float, section: EncoderSection)
         channel=channel,
         resolution=section.resolution if counts is None else 2.0 * math.pi / counts / gear,
         noise=section.noise,
+        misfit=section.misfit,
     )
 
 
@@ -235,6 +236,7 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
             channel=channel_name('actuator', f'pulley_{joint}', 'effort'),
             resolution=motor.torque_sensor.resolution,
             noise=motor.torque_sensor.noise,
+            misfit=motor.torque_sensor.misfit,
         )
     for name, encoder in file.joint_sensors.items():
         position = channel_name('pulley', f'pulley_{name}', 'position')
@@ -250,6 +252,7 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
             channel=channel_name(group, f'pulley_{name}', 'velocity'),
             resolution=speed.resolution,
             noise=speed.noise,
+            misfit=speed.misfit,
         )
     for name, shaft in file.shaft_sensors.items():
         yield Sensor(
@@ -260,6 +263,7 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
             channel=channel_name('pulley', f'pulley_{name}', 'effort'),
             resolution=shaft.resolution,
             noise=shaft.noise,
+            misfit=shaft.misfit,
         )
     if file.load_cell is not None:
         cell = file.load_cell
@@ -271,4 +275,5 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
             channel=channel_name('load_cell', '', cell.measures),
             resolution=_late('load_cell.resolution', cell.resolution, unit),
             noise=_late('load_cell.noise', cell.noise, unit),
+            misfit=_late('load_cell.misfit', cell.misfit, unit),
         )

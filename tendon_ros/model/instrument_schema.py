@@ -119,6 +119,7 @@ class EncoderSection(Section):
     counts: Count | None = None
     resolution: Annotated[float, quantity('rad', 'not negative')] = 0.0
     noise: Annotated[float, quantity('rad', 'not negative')] = 0.0
+    misfit: Annotated[float, quantity('rad', 'not negative')] = 0.0
 
     @model_validator(mode='after')
     def check_one_resolution(self) -> EncoderSection:
@@ -143,6 +144,7 @@ class TorqueSensorSection(Section):
 
     resolution: Annotated[float, quantity('N*m', 'not negative')] = 0.0
     noise: Annotated[float, quantity('N*m', 'not negative')] = 0.0
+    misfit: Annotated[float, quantity('N*m', 'not negative')] = 0.0
 
 
 class SpeedSensorSection(Section):
@@ -150,6 +152,7 @@ class SpeedSensorSection(Section):
 
     resolution: Annotated[float, quantity('rad/s', 'not negative')] = 0.0
     noise: Annotated[float, quantity('rad/s', 'not negative')] = 0.0
+    misfit: Annotated[float, quantity('rad/s', 'not negative')] = 0.0
 
 
 class ShaftSensorSection(TorqueSensorSection):
@@ -159,12 +162,13 @@ class ShaftSensorSection(TorqueSensorSection):
 
 
 class LoadCellSection(Section):
-    """What measures a contact; noise and resolution are in N, or N*m where it measures torque."""
+    """What measures a contact; its numbers are in N, or N*m where it measures torque."""
 
     contact: Name = ''
     measures: Literal['force', 'torque'] = 'force'
     resolution: str = ''
     noise: str = ''
+    misfit: str = ''
 
 
 class MotorSection(Section):

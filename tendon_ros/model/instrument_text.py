@@ -184,7 +184,12 @@ def _motor(motor: Motor, sensors: dict[str, Sensor], known: _Known) -> Document:
 
 
 def _reading(sensor: Sensor, unit: str) -> Document:
-    return _unless(0.0, resolution=(sensor.resolution, unit), noise=(sensor.noise, unit))
+    return _unless(
+        0.0,
+        resolution=(sensor.resolution, unit),
+        noise=(sensor.noise, unit),
+        misfit=(sensor.misfit, unit),
+    )
 
 
 def _encoder(sensor: Sensor, gear: float) -> Document:

@@ -31,6 +31,7 @@ class Balance:
     ``stiffness`` [N m/rad], shape (n, n): minus its derivative by the angles.
     ``damping`` [N m s/rad], shape (n, n): minus its derivative by the velocities.
     ``loop_force``, shape (m,); ``loop_stiffness``, shape (m,): its derivative by the elongation.
+    ``friction`` [N m], shape (n,): the part of the torque that is dry friction.
     """
 
     torque: FloatArray
@@ -38,6 +39,7 @@ class Balance:
     damping: FloatArray
     loop_force: FloatArray
     loop_stiffness: FloatArray
+    friction: FloatArray
 
 
 def without_contacts(instrument: Instrument) -> Instrument:
@@ -100,8 +102,9 @@ class Linearisation:
         diagonal = np.arange(self._shape[1])
         stiffness[diagonal, diagonal] -= part['J_ANGLE']
         damping[diagonal, diagonal] -= part['J_SPEED']
-        torque = part['TORQUE'] + part['SIDE'] * part['BUDGET']
-        return Balance(torque, stiffness, damping, part['TENSION'], part['J_LOOP'])
+        friction = part['SIDE'] * part['BUDGET']
+        torque = part['TORQUE'] + friction
+        return Balance(torque, stiffness, damping, part['TENSION'], part['J_LOOP'], friction)
 
 
 class Statics:

@@ -1,5 +1,7 @@
 """The three methods find the force and the inner pulleys, and say how well they know them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,10 @@ from tendon_ros.base.errors import InstrumentError, RecordingError
 from tendon_ros.estimate import build, estimate_recording, Measurement, METHODS
 from tendon_ros.estimate.offline import measurements
 from tendon_ros.estimate.score import scored
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.session import simulate
+from tendon_ros.model.trajectory_choice import chosen
 
 #: largest error of the force [N], and of an inner angle [rad], without noise: what is left is the
 #: rounding of the encoders, and inertia where a method leaves it out
@@ -113,9 +118,6 @@ def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
 
 def test_shaft_torque_gives_the_jaw_torque(rms):
     """On the grasper's file, spindle torque and angle alone give the torque at the jaw."""
-    from tendon_ros.model.session import simulate
-    from tendon_ros.model.trajectory_choice import chosen
-
     grasper = load_instrument('davinci_grasper')
     profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
     recording = simulate(grasper, profile, rate=500.0)
@@ -135,3 +137,33 @@ def test_a_bench_of_another_make(bench, practice, rms):
     for method in METHODS:
         estimate = estimate_recording(recording, build(bench, method))['estimate/force']
         assert rms(estimate.value - measured.at(estimate.time)) < 0.3, method
+
+
+def test_a_reversal_is_not_taken_for_force(rms):
+    """Where strong friction, known to a tenth, turns round, the estimate stays and says so."""
+    grasper = load_instrument('davinci_grasper')
+    rubbing, known = (
+        replace(
+            grasper,
+            effects=(
+                EffectUse('tension_friction', 'pulley_spindle', {'coefficient': coefficient}),
+                EffectUse('presliding_friction', 'pulley_spindle', {'angle': 3e-3, 'torque': 0.0}),
+            ),
+        )
+        for coefficient in (0.2, 0.18)
+    )
+    profile = chosen('multisine', grasper.motor_names, {'amplitude': '50 deg', 'duration': '8 s'})
+    recording = simulate(rubbing, profile, rate=100.0, seed=3)
+    channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
+    misfits = dict(zip(channels, (2e-3, 8e-3), strict=True))  # as a diagnosis would leave them
+    doubting = replace(
+        known,
+        sensors=tuple(replace(s, misfit=misfits.get(s.channel, 0.0)) for s in known.sensors),
+    )
+    estimated = estimate_recording(recording, build(doubting, 'static_balance', channels=channels))
+    estimate = estimated['estimate/torque']
+    truth = recording['load_cell/torque'].at(estimate.time)
+    off = np.abs(estimate.value - truth)
+    assert off.max() < 0.4 * np.abs(truth).max()
+    assert rms(off) < 0.15 * np.abs(truth).max()
+    assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.9
