@@ -27,7 +27,8 @@ from tendon_ros.model.instrument import Instrument
 
 #: the strata in the order in which cases take them; single effects make half of all
 PATTERN = ('one', 'none', 'two_three', 'one', 'unknown', 'one', 'weak', 'withheld')
-STRATA = tuple(dict.fromkeys(PATTERN))
+#: all strata; ``mixed`` is asked for by name: known effects beside one that no catalogue has
+STRATA = (*dict.fromkeys(PATTERN), 'mixed')
 
 #: a gap in noise floors: what is plain to see, and what is weak
 PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
@@ -190,7 +191,7 @@ def _faulty(
             if late or fault.out_of_bounds(nuisance):
                 # the same effect elsewhere at first, so that subtle ones have their chance too
                 keep = attempt < _SAME
-                faults = renewed(faults, n, stratum, channels, rng, keep=keep)
+                faults = renewed(faults, n, channels, rng, keep=keep)
     raise SimulationError(
         f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; take another seed'
     )

@@ -85,11 +85,15 @@ def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault
     :param stratum: one that has faults.
     :param channels: which sensors there are.
     :param rng: draws.
-    :return: one to three faults that are not at one place the special case of each other.
+    :return: one to three faults that are not at one place the special case of each other; of a
+        mixed case the last is one that no catalogue has.
     """
-    count = int(rng.integers(2, 4)) if stratum == 'two_three' else 1
+    count = int(rng.integers(2, 4)) if stratum in ('two_three', 'mixed') else 1
+    laws = [UNKNOWNS if stratum == 'unknown' else LAWS] * count
+    if stratum == 'mixed':
+        laws[-1] = UNKNOWNS
     while True:
-        faults = [_any(stratum, channels, rng) for _ in range(count)]
+        faults = [_any(own, channels, rng) for own in laws]
         if not any(_same(a, b) for n, a in enumerate(faults) for b in faults[:n]):
             return tuple(faults)
 
@@ -97,7 +101,6 @@ def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault
 def renewed(
     faults: Sequence[Fault],
     which: int,
-    stratum: str,
     channels: str,
     rng: np.random.Generator,
     *,
@@ -108,30 +111,25 @@ def renewed(
 
     :param faults: all of them.
     :param which: the index of the one.
-    :param stratum: of the case.
     :param channels: which sensors there are.
     :param rng: draws.
     :param keep: whether its effect stays, at another place and size.
     :return: the faults with a new one in its place.
     """
     others = [fault for n, fault in enumerate(faults) if n != which]
+    laws = UNKNOWNS if faults[which].law in UNKNOWNS else LAWS
     while True:
         if keep:
-            one = _drawn(faults[which].effect, _laws(stratum), channels, rng)
+            one = _drawn(faults[which].effect, laws, channels, rng)
         else:
-            one = _any(stratum, channels, rng)
+            one = _any(laws, channels, rng)
         if not any(_same(one, other) for other in others):
             return (*faults[:which], one, *faults[which + 1 :])
         keep = False
 
 
-def _laws(stratum: str) -> Sequence[Law]:
-    return UNKNOWNS if stratum == 'unknown' else LAWS
-
-
-def _any(stratum: str, channels: str, rng: np.random.Generator) -> Fault:
-    """Draw any fault of a stratum."""
-    laws = _laws(stratum)
+def _any(laws: Sequence[Law], channels: str, rng: np.random.Generator) -> Fault:
+    """Draw any fault of some laws."""
     effects = sorted({law.effect for law in laws if seen_places(law, channels)})
     return _drawn(str(rng.choice(effects)), laws, channels, rng)
 

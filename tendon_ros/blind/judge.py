@@ -15,8 +15,10 @@ NAMED = 0.5
 #: below it a candidate says nothing that could be wrong
 LEAST = 0.05
 
-KNOWN = ('one', 'two_three', 'weak')
+KNOWN = ('one', 'two_three', 'weak', 'mixed')
 FOREIGN = ('withheld', 'unknown')
+#: how effects are called that no catalogue has
+NAMELESS = 'unknown_'
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,8 @@ class Judgement:
         """Whether all that is true was named and nothing else."""
         if self.stratum in FOREIGN:
             return self.verdict_right and self.wrong == 0 and not self.refused
-        return self.found == self.truths and self.wrong == 0 and not self.refused
+        told = self.verdict_right or self.stratum != 'mixed'
+        return told and self.found == self.truths and self.wrong == 0 and not self.refused
 
     @property
     def uncertain(self) -> bool:
@@ -76,7 +79,10 @@ def judged(case: str, label: Mapping[str, Any], result: Mapping[str, Any]) -> Ju
     :return: what it adds to the score.
     """
     stratum, channels = label['stratum'], label['channels']
-    truths = [(effect['effect'], effect['place']) for effect in label['effects']]
+    everything = [(effect['effect'], effect['place']) for effect in label['effects']]
+    truths = everything
+    if stratum == 'mixed':  # nobody can name the one that no catalogue has
+        truths = [t for t in everything if not t[0].startswith(NAMELESS)]
     if 'diagnosis' not in result:
         pairs = tuple((effect, 'refused') for effect, _ in truths) or (('nothing', 'refused'),)
         return Judgement(
@@ -90,7 +96,7 @@ def judged(case: str, label: Mapping[str, Any], result: Mapping[str, Any]) -> Ju
     found = [t for t in truths if t in nameable and any(t in _set(c) for c in named)]
     wrong = [c for c in named if not _set(c) & nameable]
     where = [*said.unexplained.where, *(w.place for w in said.where)]
-    place = truths[0][1] if truths else ''
+    place = everything[-1 if stratum == 'mixed' else 0][1] if everything else ''
     return Judgement(
         case=case,
         stratum=stratum,
@@ -122,7 +128,7 @@ def _set(cause: Cause) -> set[tuple[str, str]]:
 def _right_verdicts(stratum: str) -> tuple[str, ...]:
     if stratum == 'none':
         return ('no_gap',)
-    if stratum in FOREIGN:
+    if stratum in (*FOREIGN, 'mixed'):
         return ('partly_explained', 'unexplained')
     return ('explained',) if stratum != 'weak' else ('explained', 'partly_explained', 'no_gap')
 
