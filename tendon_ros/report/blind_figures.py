@@ -11,7 +11,7 @@ import numpy as np
 from tendon_ros.blind.judge import KNOWN
 from tendon_ros.blind.score import Score
 from tendon_ros.blind.statistics import Bin
-from tendon_ros.report.style import BLUE, FAINT, INK, level, ORANGE, panels, picture, WIDTH
+from tendon_ros.report.style import BLUE, FAINT, GREEN, INK, level, ORANGE, panels, picture, WIDTH
 
 #: what stands last in the matrix, after the effects
 _LAST = ('elsewhere', 'nothing', 'refused')
@@ -90,7 +90,7 @@ def shrink_figure(score: Score) -> Figure:
     :return: the figure.
     """
     figure, (axes,) = panels(3.2)
-    colours = dict(zip(KNOWN, (BLUE, ORANGE, FAINT), strict=True))
+    colours = dict(zip(KNOWN, (BLUE, ORANGE, FAINT, GREEN), strict=True))
     for stratum in KNOWN:
         some = [j.left for j in score.judgements if j.stratum == stratum]
         left = np.sort([value for value in some if np.isfinite(value)])
