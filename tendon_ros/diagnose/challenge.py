@@ -14,7 +14,7 @@ from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
-from tendon_ros.identify.screening import Screen
+from tendon_ros.identify.screening import Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 MANY = 3  # causes from which on not every candidate challenges each of them
@@ -32,6 +32,7 @@ class Challenge:
         self._steps = steps
         self._problem = steps.problem
         self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
+        self._seen: Seen = {}
 
     def of(self, found: Found) -> None:
         """
@@ -39,6 +40,7 @@ class Challenge:
 
         :param found: its last state, rivals and states without a cause are replaced.
         """
+        self._seen = {}
         self._merge(found)
         changed = bool(self._stood)
         replaced = 0
@@ -58,6 +60,7 @@ class Challenge:
             replaced += 1
             changed = True
             found.states[-1] = self._steps.pruned(found.start, better)
+            self._seen = {}
             # who stood only just did so beside the one that has gone
             stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
         causes = found.final.model.causes
@@ -102,7 +105,7 @@ class Challenge:
         if without is not found.start:
             among = self._likely(found, cause)
             proposals = best_of(
-                self._steps.screened(Screen(self._problem, without), [cause], among)
+                self._steps.screened(Screen(self._problem, without, self._seen), [cause], among)
             )
         proposals = [p for p in proposals if p.candidate != cause]
         rivals = self._steps.fitted(without, proposals, without.cost - found.final.cost)

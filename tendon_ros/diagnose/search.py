@@ -20,7 +20,7 @@ from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.screening import Proposal, Screen
+from tendon_ros.identify.screening import Proposal, Screen, Seen
 from tendon_ros.identify.subset import Member, Subsets
 
 MOST = 5  # causes
@@ -67,7 +67,9 @@ class Search:
         state = self._steps.settled(self.problem.empty)
         found.states.append(state)
         self._steps.report('screening the candidates', 0.03)
-        screen = Screen(self.problem, state)
+        # a first look from here tells later whom to look at more closely
+        seen: Seen = {}
+        screen = Screen(self.problem, state, seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
         # what leaves no trace at a typical size is not asked again
@@ -85,7 +87,7 @@ class Search:
             if turn < ROUNDS and open_question(self.problem, state):
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:
-                    screen = Screen(self.problem, state)
+                    screen = Screen(self.problem, state, seen)
                     proposals = self._steps.screened(screen)
                 grown = self._grown(found, state, screen, proposals)
                 if turn == 0:

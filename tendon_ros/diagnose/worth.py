@@ -11,8 +11,9 @@ LEAST, LEAST_IN_ONE = 0.03, 0.12
 ATTEMPTS = 4.0
 #: part of what is left that a cause must explain which is smaller than the form of other laws
 TAKES = 0.65
-#: times the form of the laws that may be left for a search to go on after a challenge
-HOPELESS = 10.0
+#: times the form of the laws, and part of the gap, that may be left for a search to go on after a
+#: challenge: machines leave much of their noise's power, but little of the gap
+HOPELESS, MOST_LEFT = 10.0, 0.15
 #: part of what is left in one channel that it must explain else
 HALF = 0.5
 #: times the form of other laws that an event must explain: it fits whatever they once get wrong
@@ -98,6 +99,8 @@ def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
     :return: whether further causes would only imitate it.
     """
     left = problem.structured(state.left)
+    if left < MOST_LEFT * problem.structured(start.left):
+        return False
     return left > HOPELESS * (LEAST + form_power(problem, start, state))
 
 

@@ -21,6 +21,9 @@ from tendon_ros.identify.starting import Starting
 
 FloatArray = NDArray[np.float64]
 
+#: signatures by the proposals that they belong to
+Seen = dict[tuple[Candidate, tuple[float, ...]], NDArray[np.float32] | None]
+
 FARTHEST = 30.0  # typical sizes that a first proposal goes
 
 
@@ -72,11 +75,14 @@ class Screen:
 
     :param problem: the data.
     :param fit: the state.
+    :param seen: signatures at typical sizes beside a state that is much like this one. First
+        looks take them from there, and leave there what was not.
     """
 
-    def __init__(self, problem: Problem, fit: Fit) -> None:
+    def __init__(self, problem: Problem, fit: Fit, seen: Seen | None = None) -> None:
         self.problem = problem
         self.fit = fit
+        self._seen: Seen = {} if seen is None else seen
         self._starting = Starting(problem, fit)
         self._free = problem.free(fit)
         # what a bound holds back imitates nothing
@@ -105,7 +111,7 @@ class Screen:
             start = Proposal(one, z, sizes, self._base(candidate))
             # the bins about an event hardly count, whatever its size: at a small one they are all
             at = start.steps if one.instants else [1.0] * len(sizes)
-            judged = self._judged(start, at)
+            judged = self._judged(start, at, self._first(start, at))
             if judged is not None:
                 found[judged] = None
         return sorted(found, key=lambda p: -p.gain)
@@ -139,9 +145,21 @@ class Screen:
         changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
         return None if changes is None else self._projected(proposal.candidate, changes)
 
-    def _judged(self, proposal: Proposal, at: Sequence[float]) -> Proposal | None:
-        """Return a proposal with its best sizes, signatures taken at some."""
-        changes = self._changes(proposal, at)
+    def _first(self, proposal: Proposal, at: Sequence[float]) -> FloatArray | None:
+        """Return the signature of a first look, perhaps as it was beside another state."""
+        if proposal.candidate.instants:  # as large as what is left here says
+            return self._changes(proposal, at)
+        key = (proposal.candidate, proposal.z)
+        if key not in self._seen:
+            found = self._changes(proposal, at)
+            self._seen[key] = None if found is None else found.astype(np.float32)
+        seen = self._seen[key]
+        return None if seen is None else seen.astype(np.float64)
+
+    def _judged(
+        self, proposal: Proposal, at: Sequence[float], changes: FloatArray | None
+    ) -> Proposal | None:
+        """Return a proposal with its best sizes; ``changes`` are its signatures ``at`` some."""
         if changes is None:
             return None
         seen = float(np.linalg.norm(changes * np.asarray(at or [1.0])))
