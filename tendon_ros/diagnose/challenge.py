@@ -137,9 +137,11 @@ class Challenge:
         close = [r for r in rivals if r.fit.cost < near][:CLOSE]
         equal = state.cost + tie(self._problem, state) * len(state.left)
 
+        here = self._problem.slopes(state)
+
         def careful(rival: Rival) -> Fit:
             # derivatives of another state stall a fit: two places then seem to differ that do not
-            fit = self._problem.fitted(rival.fit.model, rounds=10, accuracy=1e-3)
+            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=1e-3)
             if fit.cost <= equal:
                 return fit
             return self._problem.fitted(fit.model, rounds=6, accuracy=1e-3)
