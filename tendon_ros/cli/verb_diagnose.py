@@ -73,9 +73,11 @@ def run(args: argparse.Namespace) -> None:
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')
     save_instrument(outcome.instrument, folder / 'instrument.yaml')
+    if outcome.for_prediction is not None:
+        save_instrument(outcome.for_prediction, folder / 'for_prediction.yaml')
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
     memory.forget()
-    print(summary(outcome.diagnosis))
+    print(summary(outcome.diagnosis, outcome.evidence.predicting))
     print(f'{folder / "report.html"}: the whole of it, with pictures')
 
 
@@ -84,4 +86,6 @@ WHAT_IS_HERE = (
     'diagnosis.json: the same for programs.\n'
     'instrument.yaml: the instrument file with the accepted effects; simulator, estimator and '
     'diagnose take it as it is.\n'
+    'for_prediction.yaml: only where effects that are not believed foretell what no fit has seen: '
+    'with them, simulator and estimator come nearer to the machine.\n'
 )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.result import ChannelGap
+
 FloatArray = NDArray[np.float64]
 
 
@@ -75,6 +77,19 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class Predicting:
+    """
+    What predicts better than the causes that are believed.
+
+    ``stand_ins``: effect and place of what is not believed, but foretells what no fit has seen;
+    ``gap``: with them and the believed ones, most first.
+    """
+
+    stand_ins: tuple[tuple[str, str], ...]
+    gap: tuple[ChannelGap, ...]
+
+
+@dataclass(frozen=True)
 class Evidence:
     """Everything the report shows beside the verdict."""
 
@@ -87,3 +102,4 @@ class Evidence:
     moved: tuple[Moved, ...]
     rivals: tuple[Rival, ...]
     seconds: float
+    predicting: Predicting | None = None

@@ -28,6 +28,7 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.stand_in import predicting
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.model.instrument import Instrument
@@ -41,12 +42,14 @@ class Outcome:
     The verdict, what it rests on, and the instrument with the accepted effects.
 
     ``weighed`` are all causes that the search ended with, believed or not: calibration needs them.
+    ``for_prediction`` is the instrument with what is not believed but predicts, if anything does.
     """
 
     diagnosis: Diagnosis
     evidence: Evidence
     instrument: Instrument
     weighed: tuple[Weighed, ...]
+    for_prediction: Instrument | None
 
 
 def diagnose(
@@ -108,6 +111,7 @@ def diagnose(
     beyond = left_over(left, form)
     channels = gaps(heard.held, heard.held.empty, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
+    better = predicting(ready, found, accepted, given)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
@@ -138,9 +142,10 @@ def diagnose(
         moved=gather.moved(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,
+        predicting=better[0] if better else None,
     )
     report('done', 1.0)
-    return Outcome(diagnosis, evidence, repaired, weighed)
+    return Outcome(diagnosis, evidence, repaired, weighed, better[1] if better else None)
 
 
 def _searched(

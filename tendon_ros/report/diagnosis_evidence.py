@@ -10,7 +10,7 @@ from tendon_ros.effects import find
 from tendon_ros.report.blocks import Block, Columns, Details, Listing
 from tendon_ros.report.diagnosis_figures import channel_bars, rival_bars
 from tendon_ros.report.diagnosis_traces import rmse, telling, trace_figure, trace_words
-from tendon_ros.report.diagnosis_verdict import in_floors
+from tendon_ros.report.diagnosis_verdict import in_floors, prediction_words
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
@@ -50,6 +50,10 @@ def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section
         sections.append(_considered(diagnosis, evidence))
     if evidence.floors or evidence.moved:
         sections.append(_basis(evidence))
+    if evidence.predicting is not None:
+        words = prediction_words(evidence.predicting)
+        blocks = (Prose(words[0].upper() + words[1:]), gap_table(evidence.predicting.gap))
+        sections.append(Section('For prediction', blocks, 'prediction'))
     sections.append(_run(diagnosis, evidence))
     return tuple(sections)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tendon_ros.diagnose.evidence import Predicting
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis, Where
 from tendon_ros.report.diagnosis_words import (
     channel_words,
@@ -38,11 +39,35 @@ _NAMED = 3  # more effects than that make a sentence unreadable
 
 def overall(diagnosis: Diagnosis) -> tuple[float, float]:
     """Return the gap before and after, over all channels, in noise standard deviations."""
-    known = [in_floors(g) for g in diagnosis.gap if g.noise_floor > 0.0]
+    return overall_of(diagnosis.gap)
+
+
+def overall_of(gaps: Sequence[ChannelGap]) -> tuple[float, float]:
+    """Return gaps before and after, over all channels, in noise standard deviations."""
+    known = [in_floors(g) for g in gaps if g.noise_floor > 0.0]
     if not known:
         return 0.0, 0.0
     before, after = np.sqrt(np.mean(np.square(known), axis=0))
     return float(before), float(after)
+
+
+def prediction_words(predicting: Predicting) -> str:
+    """
+    Return what there is for prediction beyond the causes that are believed.
+
+    :param predicting: effects that stand in for others, and the gap with them.
+    :return: plain text with numbers.
+    """
+    before, after = (number(x) for x in overall_of(predicting.gap))
+    names = joined([inside(effect_words(*pair)) for pair in predicting.stand_ins])
+    many = len(predicting.stand_ins) > 1
+    return (
+        f'{names} {"are" if many else "is"} not believed, perhaps '
+        f'{"they stand" if many else "it stands"} in for something else, but '
+        f'{"foretell" if many else "foretells"} what no fit has seen: with '
+        f'{"them" if many else "it"} the gap falls from {before} to {after} noise deviations. '
+        'for_prediction.yaml has the model for simulator and estimator.'
+    )
 
 
 def in_floors(gap: ChannelGap) -> tuple[float, float]:
