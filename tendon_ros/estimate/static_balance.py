@@ -38,8 +38,10 @@ BALANCE = 1e-5
 CLOSE = 1e-9
 #: a step that promises to lower the weighted squares by less than this ends the search too
 PROMISE = 1e-6
-#: most steps of one search
+#: most steps of one search; where cables go slack the last ones change nothing to speak of
 TRIES = 60
+#: deviations by which every equation may be off for the measurement to be used
+REFUSED = 100.0
 #: velocities for the direction of friction are smoothed over this time [s]
 SMOOTHING = 0.02
 #: time in which the force may change by as much as it is uncertain at best [s]
@@ -237,7 +239,7 @@ class StaticBalanceObserver(Observer):
             angle[:] = trial
             force += part * move[-1]
             cost, residual, rows, by_fixed = after
-        else:
+        if cost > REFUSED**2 * len(self._weight):
             raise RecordingError(
                 f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
                 'or a sign may be wrong'
