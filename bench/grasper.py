@@ -96,8 +96,8 @@ def main() -> None:
         for cause in outcome.diagnosis.causes:
             print(f'{cause.probability:.2f} {cause.effect} {cause.place}')
         if outcome.evidence.predicting:
-            for effect, place in outcome.evidence.predicting.stand_ins:
-                print(f'for prediction only: {effect} {place}')
+            for cause in outcome.evidence.predicting.stand_ins:
+                print(f'for prediction: {cause.probability:.2f} {cause.effect} {cause.place}')
     held = [run for key, run in runs.items() if key not in TRAINED]
     print(f'{len(held)} runs that no fit has seen')
     for name, instrument in (('file', plain), ('diagnosed', found)):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.result import ChannelGap
+from tendon_ros.diagnose.result import Cause, ChannelGap
 
 FloatArray = NDArray[np.float64]
 
@@ -81,11 +81,11 @@ class Predicting:
     """
     What predicts better than the causes that are believed.
 
-    ``stand_ins``: effect and place of what is not believed, but foretells what no fit has seen;
-    ``gap``: with them and the believed ones, most first.
+    ``stand_ins``: what is not believed but foretells what no fit has seen, what is missed most
+    first; ``gap``: with them and the believed causes.
     """
 
-    stand_ins: tuple[tuple[str, str], ...]
+    stand_ins: tuple[Cause, ...]
     gap: tuple[ChannelGap, ...]
 
 

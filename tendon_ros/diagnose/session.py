@@ -111,7 +111,7 @@ def diagnose(
     beyond = left_over(left, form)
     channels = gaps(heard.held, heard.held.empty, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
-    better = predicting(ready, found, accepted, given)
+    better = predicting(ready, found, weighed, accepted, given)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]

@@ -14,19 +14,25 @@ from tendon_ros.diagnose.evidence import Predicting
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.judge import foretells
+from tendon_ros.diagnose.naming import causes_of, Weighed
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.model.instrument import Instrument
 
 
 def predicting(
-    ready: Prepared, found: Found, accepted: Sequence[int], instrument: Instrument
+    ready: Prepared,
+    found: Found,
+    weighed: Sequence[Weighed],
+    accepted: Sequence[int],
+    instrument: Instrument,
 ) -> tuple[Predicting, Instrument] | None:
     """
     Return what predicts best.
 
     :param ready: the problem.
     :param found: what the search has found.
+    :param weighed: its causes.
     :param accepted: which of its causes are believed.
     :param instrument: the file as it was.
     :return: the effects that stand in and the gaps with them, and the instrument; None where
@@ -37,13 +43,16 @@ def predicting(
     extra = [k for k in extra if not causes[k].instants]  # nothing that happened happens again
     if not extra:
         return None
+    kept = sorted({*accepted, *extra})
     model = found.final.model
     for k in reversed(range(len(causes))):
-        if k not in accepted and k not in extra:
+        if k not in kept:
             model = model.without(k)
     heard = ready.heard_again(model)
     fit = heard.problem.fitted(model, rounds=6)
     channels = gaps(heard.held, heard.held.empty, fit.model)
     repaired = doubted(patched(heard.problem, fit.model, instrument), channels)
-    names = tuple((causes[k].effect, causes[k].place) for k in extra)
-    return Predicting(names, channels), repaired
+    everything = causes_of(heard, found, fit, [weighed[k] for k in kept])
+    stand_ins = [c for k, c in zip(kept, everything, strict=True) if k in extra]
+    stand_ins.sort(key=lambda c: c.shrink.after - c.shrink.without_this)
+    return Predicting(tuple(stand_ins), channels), repaired

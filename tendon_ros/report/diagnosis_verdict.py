@@ -59,7 +59,7 @@ def prediction_words(predicting: Predicting) -> str:
     :return: plain text with numbers.
     """
     before, after = (number(x) for x in overall_of(predicting.gap))
-    names = joined([inside(effect_words(*pair)) for pair in predicting.stand_ins])
+    names = joined([inside(effect_words(c.effect, c.place)) for c in predicting.stand_ins])
     many = len(predicting.stand_ins) > 1
     return (
         f'{names} {"are" if many else "is"} not believed, perhaps '

@@ -125,3 +125,12 @@ def test_pictures_come_for_dark_pages_too(page):
 def test_candidates_that_cannot_show_are_grouped_by_reason(page):
     text = text_of(page('three_causes'))
     assert 'Inertia pulley M, pulley L, pulley 1 leaves no trace at these speeds' in text
+
+
+def test_what_only_predicts_is_no_cause_and_said_to_be_none(page):
+    said = text_of(page('unexplained'))
+    assert 'For prediction' in said
+    assert 'is not believed' in said
+    assert 'for_prediction.yaml' in said
+    assert '31 %' in said
+    assert 'For prediction' not in text_of(page('partly'))
