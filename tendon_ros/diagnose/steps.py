@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import at_once, degenerate, simpler
+from tendon_ros.diagnose.form import at_once, degenerate, least_late, simpler
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.identify.candidate import Candidate
@@ -154,6 +154,9 @@ class Steps:
         """
         state = self._renamed(state)
         state = self._parted(state)
+        shared = least_late(self.problem, state.model)
+        if shared is not None:
+            state = self.settled(state.model.without(shared))
         checked: set[Candidate] = set()
         while True:
             worth = worths(self.problem, state)

@@ -2,9 +2,17 @@
 
 import pytest
 
-from tendon_ros.diagnose.form import at_once, degenerate, form_power, simpler, tie
+from tendon_ros.diagnose.form import (
+    at_once,
+    degenerate,
+    form_power,
+    least_late,
+    simpler,
+    tie,
+)
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 BENT = [
     ('asymmetric_friction', {'forward': 0.2, 'backward': 0.21}, {'torque': 0.205}),
@@ -85,3 +93,13 @@ def test_events_at_once_are_one(effect, place, only, values, same):
     other = Candidate(effect, place, only), values
     assert at_once(push, other) is same
     assert at_once(other, push) is same
+
+
+def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '4 s'), ('amplitude', '30 deg')))
+    problem = prepared([run], body).problem
+    one = problem.empty.joined(Candidate('sensor_delay', 'encoder_body'), {'time': 0.012})
+    assert least_late(problem, one) is None
+    both = one.joined(Candidate('sensor_delay', 'torque_body'), {'time': 0.011})
+    assert least_late(problem, both) == 1
