@@ -185,15 +185,20 @@ def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> S
 
 
 def _misfits(instrument: Instrument, segment: Segment) -> dict[str, float]:
-    """Return the part of each channel's variance that the instrument file gets wrong."""
+    """
+    Return the part of each channel's variance that the instrument file gets wrong.
+
+    A sensor that loses its sign is right in size: it must not deny a wall that is there.
+    """
     [predicted] = Rollouts(instrument, [segment]).predicted([[]])
     found = {}
     for row, measured in zip(predicted, segment.measured, strict=True):
         known = np.isfinite(measured.value)
         if known.sum() > 2:
-            off = (row - measured.value)[known]
-            scale = float(np.mean(measured.value[known] ** 2)) + 1e-30
-            found[measured.sensor.channel] = float(np.mean(off**2)) / scale
+            said, value = row[known], measured.value[known]
+            off = min(np.mean((said - value) ** 2), np.mean((np.abs(said) - np.abs(value)) ** 2))
+            scale = float(np.mean(value**2)) + 1e-30
+            found[measured.sensor.channel] = float(off) / scale
     return found
 
 

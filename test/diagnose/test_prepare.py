@@ -47,6 +47,19 @@ def test_a_cell_that_touches_nothing_does_not_push(bench, free, bias):
     assert 'load_cell/force' in {m.sensor.channel for m in segment.measured}
 
 
+def test_a_torque_without_its_sign_denies_no_wall(bench, measured_on):
+    rectified = measured_on(
+        bench,
+        ('sensor_rectified', 'torque_L', {'rectified': 1.0}),
+        trajectory='paper_fig12',
+        settings=(),
+        touching=True,
+    )
+    kept = {k: c for k, c in rectified.channels.items() if k.startswith('actuator/')}
+    [segment] = prepared([replace(rectified, channels=kept)], bench).whole.rollouts.segments
+    assert segment.contacts == ('tip',)
+
+
 def test_a_measured_load_pushes_where_no_wall_fits(bench, measured_on):
     # something soft at another place than the wall of the file
     soft = replace(
