@@ -68,7 +68,7 @@ def _prediction(predicting: Predicting) -> Section:
         factor, unit = scale(cause.shrink.unit, cause.shrink.without_this)
         missed = (
             f'{number(factor * cause.shrink.without_this)} → '
-            f'{number(factor * cause.shrink.after)} {unit}, {cause.shrink.channel}'
+            f'{number(factor * cause.shrink.after)} {unit}, {channel_words(cause.shrink.channel)}'
         )
         words = effect_words(cause.effect, cause.place)
         rows.append((words, percent(cause.probability), ', '.join(values), missed))
