@@ -34,7 +34,7 @@ FloatArray = NDArray[np.float64]
 
 #: balance of a pulley that no torque sensor sees: how exactly it must hold [N m]
 BALANCE = 1e-5
-#: a Newton step below this ends the search [rad]
+#: a Newton step below this ends the search [rad, N or N m]
 CLOSE = 1e-9
 #: a step that promises to lower the weighted squares by less than this ends the search too
 PROMISE = 1e-6
@@ -221,12 +221,11 @@ class StaticBalanceObserver(Observer):
         for _ in range(TRIES):
             orthogonal, upper = np.linalg.qr(rows)
             move = np.linalg.solve(upper, -(orthogonal.T @ residual))
-            largest = float(np.abs(move[:-1]).max()) if len(move) > 1 else 0.0
             promised = float(np.sum(np.square(upper @ move)))
-            if largest < CLOSE or promised < PROMISE:
+            if np.abs(move).max() < CLOSE or promised < PROMISE:
                 break
             # the curve's knee and slack make a full step overshoot: shorten it until it helps
-            part = min(1.0, 0.05 / largest)
+            part = min(1.0, 0.05 / max(float(np.abs(move[:-1]).max(initial=0.0)), 0.05))
             for _ in range(12):
                 trial = angle.copy()
                 trial[self._free] += part * move[:-1]
