@@ -3,11 +3,16 @@
 from dataclasses import replace
 from pathlib import Path
 
+from hypothesis import HealthCheck, settings
 import pytest
 
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen
+
+# machines are shared and noisy: no test passes or fails by the time it took
+settings.register_profile('untimed', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile('untimed')
 
 #: recordings that do not come with the package; tests that want them skip without
 SHARED = Path(__file__).resolve().parents[2] / 'shared'

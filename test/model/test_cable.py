@@ -59,7 +59,7 @@ def test_equally_spaced_points_are_met_exactly(sava):
     np.testing.assert_allclose(tension_at(sava, np.array(sava.elongation)), sava.tension)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     steps=st.lists(
         st.tuples(st.floats(1e-6, 1e-3), st.sampled_from([0.0]) | st.floats(1e-6, 50.0)),

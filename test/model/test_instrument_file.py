@@ -116,7 +116,8 @@ def test_written_file_reads_like_one_by_hand(tmp_path):
 
 
 @settings(
-    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=30,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 @given(
     values=st.lists(st.floats(1e-9, 1e9), min_size=8, max_size=8),

@@ -85,7 +85,7 @@ def test_other_instruments(reference, name):
         assert np.abs(rows.contact_force - force).max() < 1e-2
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     parents=strategies.lists(strategies.integers(0, 4), min_size=1, max_size=6),
     seed=strategies.integers(0, 100),
