@@ -177,7 +177,7 @@ class StaticBalanceObserver(Observer):
             self._statics.carry(self._angle, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
             self._doubt_friction(angle - self._angle, now, now - rubbed)
-            if np.any(self._rubbing > 0.0):  # it has turned round on the way: once more
+            if np.any(self._rubbing > BALANCE):  # it has turned round on the way: once more
                 force, covariance = self._solve(angle, measurement)
         self._angle = angle
         self._force = force
