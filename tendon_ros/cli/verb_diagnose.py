@@ -73,8 +73,10 @@ def run(args: argparse.Namespace) -> None:
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')
     save_instrument(outcome.instrument, folder / 'instrument.yaml')
+    better = folder / 'for_prediction.yaml'
+    better.unlink(missing_ok=True)  # that of an earlier run into this folder
     if outcome.for_prediction is not None:
-        save_instrument(outcome.for_prediction, folder / 'for_prediction.yaml')
+        save_instrument(outcome.for_prediction, better)
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
     memory.forget()
     print(summary(outcome.diagnosis, outcome.evidence.predicting))
