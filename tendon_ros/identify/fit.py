@@ -16,14 +16,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.axis import Axis
-from tendon_ros.identify.explanation import BRISTLE, Model
-from tendon_ros.identify.residuals import Residuals
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.unknowns import Unknowns
 
 FloatArray = NDArray[np.float64]
 
-#: time over which what is left remembers itself [s]: so many bins count as one against a prior
-REMEMBERED = 0.4
 #: [s] that begin and end of events are tried at, and how often
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
 MOVES = 2
@@ -48,44 +45,8 @@ class Fit:
     cost: float
 
 
-class Problem(Residuals):
+class Problem(Unknowns):
     """The recordings as a least-squares problem."""
-
-    def pack(self, model: Model) -> FloatArray:
-        """Return the unknowns of a model as one vector: causes, bristles, tolerances."""
-        own = [z for row in model.z for z in row]
-        return np.array([*own, *model.bristle.values(), *model.moved])
-
-    def unpack(self, like: Model, x: FloatArray) -> Model:
-        """Return the model with the unknowns of a vector."""
-        rows = []
-        at = 0
-        for row in like.z:
-            rows.append(tuple(float(z) for z in x[at : at + len(row)]))
-            at += len(row)
-        bristle = {p: float(z) for p, z in zip(like.bristle, x[at:], strict=False)}
-        at += len(bristle)
-        return Model(like.causes, tuple(rows), bristle, x[at:].copy())
-
-    def axes(self, model: Model) -> list[Axis]:
-        """Return the axes of all unknowns, in their order."""
-        own = [axis for c in model.causes for axis in c.coordinates.axes]
-        return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
-
-    def prior(self, model: Model) -> FloatArray:
-        """
-        Return what a deviation of each unknown costs before any data.
-
-        What is left of a wrong model is no noise: its bins repeat each other. Counted one by one,
-        they would move any number of the file to the end of its tolerance.
-
-        :param model: whose unknowns.
-        :return: by its square on the axis, shape (unknowns,).
-        """
-        counted = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
-        weight = np.array([axis.spread**-2 for axis in self.axes(model)])
-        weight[len(weight) - len(self.tolerances) :] *= counted
-        return weight
 
     def free(self, fit: Fit) -> NDArray[np.bool_]:
         """
@@ -97,14 +58,6 @@ class Problem(Residuals):
         x = self.pack(fit.model)
         bounds = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2)
         return _free(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
-
-    def labels(self, model: Model) -> list[str]:
-        """Return a name for each unknown that holds in any model which has it."""
-        own = [
-            f'{c.effect}@{c.place}@{c.only}.{p.name}' for c in model.causes for p in c.parameters
-        ]
-        moved = [f'{t.place}.{t.quantity}' for t in self.tolerances]
-        return [*own, *(f'{place}.bristle' for place in model.bristle), *moved]
 
     def slope(self, model: Model, left: FloatArray, columns: Sequence[int]) -> FloatArray:
         """
