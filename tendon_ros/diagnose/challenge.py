@@ -77,9 +77,7 @@ class Challenge:
             if one.place != two.place or not {one, two} <= set(causes):
                 continue
             state = found.final
-            model = state.model
-            for k in sorted((causes.index(one), causes.index(two)), reverse=True):
-                model = model.without(k)
+            model = state.model.without(causes.index(one), causes.index(two))
             smaller = self._problem.fitted(model, self._problem.slopes(state), 8, 1e-3)
             among = [c for c in self._steps.candidates if c.place == one.place]
             proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))

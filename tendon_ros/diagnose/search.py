@@ -214,9 +214,7 @@ class Search:
         order = sorted(range(len(worth)), key=lambda k: -worth[k])
         states = [found.start]
         for count in range(1, len(order)):
-            model = final.model
-            for k in sorted(order[count:], reverse=True):
-                model = model.without(k)
+            model = final.model.without(*order[count:])
             known = self.problem.slopes(final)
             states.append(self.problem.fitted(model, known, rounds=8, accuracy=1e-2))
         found.states = [*states, final] if order else states

@@ -96,9 +96,7 @@ def diagnose(
     )
     chances = [chance(ready, found, k, w.signs) for k, w in enumerate(weighed)]
     accepted = [k for k, p in enumerate(chances) if p >= NAMED]
-    model = found.final.model
-    for k in reversed([k for k, p in enumerate(chances) if p < NAMED]):
-        model = model.without(k)
+    model = found.final.model.without(*(k for k, p in enumerate(chances) if p < NAMED))
     believed = found.final
     if len(accepted) < len(chances):
         believed = problem.fitted(model, rounds=6)

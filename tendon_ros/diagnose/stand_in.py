@@ -44,10 +44,7 @@ def predicting(
     if not extra:
         return None
     kept = sorted({*accepted, *extra})
-    model = found.final.model
-    for k in reversed(range(len(causes))):
-        if k not in kept:
-            model = model.without(k)
+    model = found.final.model.without(*(k for k in range(len(causes)) if k not in kept))
     heard = ready.heard_again(model)
     fit = heard.problem.fitted(model, rounds=6)
     channels = gaps(heard.held, heard.held.empty, fit.model)

@@ -200,6 +200,6 @@ class Steps:
             others = [n for n in range(len(model.causes)) if n != k and n not in gone]
             if any(at_once(own, (model.causes[n], model.values(n))) for n in others):
                 gone.append(k)
-        for k in sorted(gone, reverse=True):
-            model = model.without(k)
-        return self.settled(model, self.problem.slopes(state)) if gone else state
+        if not gone:
+            return state
+        return self.settled(model.without(*gone), self.problem.slopes(state))

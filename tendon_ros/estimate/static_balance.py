@@ -258,10 +258,8 @@ class StaticBalanceObserver(Observer):
         prior = (angle[self._free] - start) / WANDER
         expected, spread = self._expected
         residual = np.concatenate([residual, prior, [(force - expected) / spread]])
-        unknowns = len(self._free) + 1
-        weight = np.full(unknowns, 1.0 / WANDER)
-        weight[-1] = 1.0 / spread
-        slope = np.vstack([slope, np.diag(weight)])
+        known = [1.0 / WANDER] * len(self._free) + [1.0 / spread]
+        slope = np.vstack([slope, np.diag(known)])
         return float(residual @ residual), residual, slope, by_fixed
 
     def _equations(

@@ -50,18 +50,19 @@ class Model:
         """
         return self.causes[k].coordinates.values(self.z[k])
 
-    def without(self, k: int) -> Model:
+    def without(self, *which: int) -> Model:
         """
-        Return the model without one cause, nothing refitted.
+        Return the model without some causes, nothing refitted.
 
-        :param k: which.
+        :param which: their numbers.
         :return: the smaller model.
         """
-        causes = self.causes[:k] + self.causes[k + 1 :]
+        kept = [k for k in range(len(self.causes)) if k not in which]
+        causes = tuple(self.causes[k] for k in kept)
         left = _dry_places(causes)
         return Model(
             causes,
-            self.z[:k] + self.z[k + 1 :],
+            tuple(self.z[k] for k in kept),
             {place: z for place, z in self.bristle.items() if place in left},
             self.moved,
         )

@@ -72,28 +72,33 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
         where the file gives a tolerance.
     """
     stated = instrument.tolerances
-    found = []
+    found: list[Tolerance] = []
+
+    def movable(effect: str, place: str, quantity: str, axis: Axis | None) -> None:
+        if axis is None:
+            return
+        parameter = _moving(effect, quantity)
+        # beyond what the effect can be, nothing can be computed
+        low, high = max(axis.low, parameter.low), min(axis.high, parameter.high)
+        within = replace(axis, low=low, high=high)
+        found.append(Tolerance(effect, place, quantity, parameter.name, within))
+
     for effect, place, quantity, usual in _factors(instrument):
-        spread = stated.get(f'{place}.{quantity}', usual)
-        # a number of the file is moved by its effect's parameter of that name, or by its first
-        known = {p.name: p for p in find(effect).parameters}
-        parameter = known.get(quantity, find(effect).parameters[0])
-        if spread > 0.0:
-            factor = _factor(quantity, spread, parameter)
-            found.append(Tolerance(effect, place, quantity, parameter.name, factor))
+        axis = _factor(
+            quantity, stated.get(f'{place}.{quantity}', usual), _moving(effect, quantity)
+        )
+        movable(effect, place, quantity, axis)
     for pulley in instrument.pulleys:
         place = f'pulley_{pulley.name}'
         spread = stated.get(f'{place}.damping', DAMPING)
-        axis = _addition('damping', 'N m s/rad', pulley.damping, spread, SOME_DAMPING)
-        if axis is not None:
-            axis = replace(axis, low=max(axis.low, -pulley.damping))  # or it would drive
-            found.append(Tolerance('viscous_friction', place, 'damping', 'damping', axis))
+        unit, least = 'N m s/rad', -pulley.damping  # less would drive
+        axis = _addition('damping', unit, pulley.damping, spread, SOME_DAMPING, least)
+        movable('viscous_friction', place, 'damping', axis)
     for contact in instrument.contacts:
         place = contact_place(instrument, contact)
         spread = stated.get(f'{place}.position', 0.0)
         axis = _addition('position', 'rad', 1.0, spread, 0.05)
-        if axis is not None:
-            found.append(Tolerance('contact_position', place, 'position', 'angle', axis))
+        movable('contact_position', place, 'position', axis)
     return tuple(found)
 
 
@@ -114,23 +119,37 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
         yield 'contact_stiffness', contact_place(instrument, contact), 'stiffness', MEASURED
 
 
-def _factor(quantity: str, spread: float, parameter: Parameter) -> Axis:
-    """Return the axis of a factor about one."""
-    # beyond what the effect can be, nothing can be computed
-    low, high = max(parameter.low, 0.02), min(parameter.high, 50.0)
+def _moving(effect: str, quantity: str) -> Parameter:
+    """Return the parameter that moves a number of the file: that of its name, or the first."""
+    parameters = find(effect).parameters
+    return next((p for p in parameters if p.name == quantity), parameters[0])
+
+
+def _factor(quantity: str, spread: float, parameter: Parameter) -> Axis | None:
+    """Return the axis of a factor about one; None where nothing may move."""
+    if spread <= 0.0:
+        return None
     if math.isinf(spread):
         scale = 0.25 if parameter.search == 'guess' else 0.5
-        return Axis(quantity, '1', low, high, 1.0, scale, log=True, spread=REACH)
-    low, high = max(low, 1.0 - REACH * spread), min(high, 1.0 + REACH * spread)
+        return Axis(quantity, '1', 0.02, 50.0, 1.0, scale, log=True, spread=REACH)
+    low, high = max(0.02, 1.0 - REACH * spread), 1.0 + REACH * spread
     return Axis(quantity, '1', low, high, 1.0, spread, spread=1.0)
 
 
-def _addition(quantity: str, unit: str, nominal: float, spread: float, some: float) -> Axis | None:
+def _addition(
+    quantity: str,
+    unit: str,
+    nominal: float,
+    spread: float,
+    some: float,
+    least: float = -math.inf,
+) -> Axis | None:
     """Return the axis of what is added to a number; None where nothing may be."""
     if math.isinf(spread):
         scale = max(0.5 * nominal, some)
-        return Axis(quantity, unit, -1e3, 1e3, 0.0, scale, spread=10.0)
+        return Axis(quantity, unit, max(least, -1e3), 1e3, 0.0, scale, spread=10.0)
     scale = spread * nominal
     if scale <= 0.0:
         return None
-    return Axis(quantity, unit, -REACH * scale, REACH * scale, 0.0, scale, spread=1.0)
+    low = max(least, -REACH * scale)
+    return Axis(quantity, unit, low, REACH * scale, 0.0, scale, spread=1.0)
