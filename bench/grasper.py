@@ -90,14 +90,14 @@ def main() -> None:
             plan=False,
             report=lambda what, done: print(f'{done:4.0%} {what}', flush=True),
         )
-        found = outcome.for_prediction or outcome.instrument
+        found = outcome.instrument
         args.out.parent.mkdir(parents=True, exist_ok=True)
         save_instrument(found, args.out)
         for cause in outcome.diagnosis.causes:
-            print(f'{cause.probability:.2f} {cause.effect} {cause.place}')
-        if outcome.evidence.predicting:
-            for cause in outcome.evidence.predicting.stand_ins:
-                print(f'for prediction: {cause.probability:.2f} {cause.effect} {cause.place}')
+            same = ''.join(f' | {o.effect} {o.place}' for o in cause.indistinguishable)
+            print(f'{cause.probability:.2f} {cause.effect} {cause.place}{same}')
+        for cause in outcome.diagnosis.beside:
+            print(f'beside: {cause.probability:.2f} {cause.effect} {cause.place}')
     held = [run for key, run in runs.items() if key not in TRAINED]
     print(f'{len(held)} runs that no fit has seen')
     for name, instrument in (('file', plain), ('diagnosed', found)):

@@ -73,21 +73,16 @@ def run(args: argparse.Namespace) -> None:
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')
     save_instrument(outcome.instrument, folder / 'instrument.yaml')
-    better = folder / 'for_prediction.yaml'
-    better.unlink(missing_ok=True)  # that of an earlier run into this folder
-    if outcome.for_prediction is not None:
-        save_instrument(outcome.for_prediction, better)
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
     memory.forget()
-    print(summary(outcome.diagnosis, outcome.evidence.predicting))
+    print(summary(outcome.diagnosis))
     print(f'{folder / "report.html"}: the whole of it, with pictures')
 
 
 WHAT_IS_HERE = (
     'report.html: what was found, with pictures.\n'
     'diagnosis.json: the same for programs.\n'
-    'instrument.yaml: the instrument file with the accepted effects; simulator, estimator and '
-    'diagnose take it as it is.\n'
-    'for_prediction.yaml: only where effects that are not believed foretell what no fit has seen: '
-    'with them, simulator and estimator come nearer to the machine.\n'
+    'instrument.yaml: the instrument file with the effects that were found, those that are only '
+    'likely too where they foretell what no fit has seen; simulator, estimator and diagnose take '
+    'it as it is.\n'
 )

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.result import Cause, ChannelGap
-
 FloatArray = NDArray[np.float64]
 
 
@@ -17,7 +15,7 @@ class Trace:
     """
     One channel of one recording, measured and predicted, all of shape (n,) in ``unit``.
 
-    ``before`` is the prediction of the instrument file, ``after`` that with the accepted effects.
+    ``before`` is the prediction of the instrument file, ``after`` with the effects found.
     ``held_out`` marks samples that no fit has seen.
     """
 
@@ -77,19 +75,6 @@ class Rival:
 
 
 @dataclass(frozen=True)
-class Predicting:
-    """
-    What predicts better than the causes that are believed.
-
-    ``stand_ins``: what is not believed but foretells what no fit has seen, what is missed most
-    first; ``gap``: with them and the believed causes.
-    """
-
-    stand_ins: tuple[Cause, ...]
-    gap: tuple[ChannelGap, ...]
-
-
-@dataclass(frozen=True)
 class Evidence:
     """Everything the report shows beside the verdict."""
 
@@ -102,4 +87,3 @@ class Evidence:
     moved: tuple[Moved, ...]
     rivals: tuple[Rival, ...]
     seconds: float
-    predicting: Predicting | None = None

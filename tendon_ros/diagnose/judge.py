@@ -19,7 +19,7 @@ from tendon_ros.diagnose.form import form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.worth import gains
-from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
@@ -89,19 +89,19 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
-def signs_of(problem: Problem, found: Found, k: int) -> Signs:
+def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     """
-    Return what speaks for one cause.
+    Return what speaks for what a fit does without.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
-    :param k: which cause.
+    :param without: the fit without one cause, or without several that make up for one another.
     :return: the signs.
     """
     final = found.final
     samples = len(final.left)
     left = problem.structured(final.left)
-    worth, in_one = gains(problem, found.without[k], final)
+    worth, in_one = gains(problem, without, final)
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)
     return Signs(max(worth, 1e-9), in_one, left, explained, form)
@@ -109,6 +109,20 @@ def signs_of(problem: Problem, found: Found, k: int) -> Signs:
 
 #: probability that a cause has at most which foretells nothing
 IDLE = 0.3
+
+
+def foretell(ready: Prepared, found: Found, without: Fit) -> bool:
+    """
+    Return whether what a fit does without makes anything better on what no fit has seen.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param without: the fit without one cause, or without several.
+    :return: whether.
+    """
+    poorer = ready.held.left(without.model)
+    left = ready.held.left(found.final.model)
+    return float(poorer @ poorer) > float(left @ left)
 
 
 def foretells(ready: Prepared, found: Found, k: int) -> bool:
@@ -120,11 +134,8 @@ def foretells(ready: Prepared, found: Found, k: int) -> bool:
     :param k: which cause.
     :return: whether; an event need not have happened there.
     """
-    if found.final.model.causes[k].instants:
-        return True
-    without = ready.held.left(found.without[k].model)
-    left = ready.held.left(found.final.model)
-    return float(without @ without) > float(left @ left)
+    happened = bool(found.final.model.causes[k].instants)
+    return happened or foretell(ready, found, found.without[k])
 
 
 def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:

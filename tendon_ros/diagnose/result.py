@@ -70,7 +70,7 @@ class Shrink(_Frozen):
 
 
 class Cause(_Frozen):
-    """An accepted effect; ``recording``: the one in which it happened, empty where in all."""
+    """An effect that was found; ``recording``: that in which it happened, empty where in all."""
 
     effect: str
     place: str
@@ -108,7 +108,12 @@ class NextExperiment(_Frozen):
 
 
 class Diagnosis(_Frozen):
-    """The whole answer."""
+    """
+    The whole answer.
+
+    ``beside``: effects that ``instrument.yaml`` has beside the named causes, since they foretell
+    what no fit has seen; each may stand in for something else.
+    """
 
     schema_: Literal[1] = Field(default=1, alias='schema')
     verdict: Verdict
@@ -116,6 +121,7 @@ class Diagnosis(_Frozen):
     closed_loop: tuple[ChannelGap, ...] = ()
     where: tuple[Where, ...]
     causes: tuple[Cause, ...]
+    beside: tuple[Cause, ...] = ()
     candidates: tuple[Judged, ...]
     unexplained: Unexplained
     next_experiment: tuple[NextExperiment, ...] = ()

@@ -13,22 +13,22 @@ import time
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather
+from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.judge import chance, equals, left_over, signs_of, surprising
+from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
+from tendon_ros.diagnose.naming import causes_of, judged, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.diagnose.stand_in import predicting
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.model.instrument import Instrument
@@ -39,17 +39,15 @@ Report = Callable[[str, float], None]
 @dataclass(frozen=True)
 class Outcome:
     """
-    The verdict, what it rests on, and the instrument with the accepted effects.
+    The verdict, what it rests on, and the instrument with all that foretells.
 
     ``weighed`` are all causes that the search ended with, believed or not: calibration needs them.
-    ``for_prediction`` is the instrument with what is not believed but predicts, if anything does.
     """
 
     diagnosis: Diagnosis
     evidence: Evidence
     instrument: Instrument
     weighed: tuple[Weighed, ...]
-    for_prediction: Instrument | None
 
 
 def diagnose(
@@ -86,30 +84,22 @@ def diagnose(
     ready, found = _searched(ready, candidates, jobs, report, memory)
     problem = ready.problem
     report('judging', 0.85)
-    weighed = tuple(
-        Weighed(
-            cause,
-            tuple(r.candidate for r in equals(problem, found, k)),
-            signs_of(problem, found, k),
-        )
-        for k, cause in enumerate(found.final.model.causes)
-    )
-    chances = [chance(ready, found, k, w.signs) for k, w in enumerate(weighed)]
-    accepted = [k for k, p in enumerate(chances) if p >= NAMED]
-    model = found.final.model.without(*(k for k, p in enumerate(chances) if p < NAMED))
+    held = belief(ready, found)
+    model = held.model(found, held.accepted)
     believed = found.final
-    if len(accepted) < len(chances):
+    if len(model.causes) < len(believed.model.causes):
         believed = problem.fitted(model, rounds=6)
     left = problem.structured(believed.left)
+    beyond = left_over(left, form_power(problem, found.start, believed))
+    places = whereabouts(ready, found, held.accepted, believed, left)
+    model = held.model(found, held.kept)
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    form = form_power(problem, found.start, believed)
-    causes = causes_of(heard, found, final, [weighed[k] for k in accepted])
-    places = whereabouts(ready, found, accepted, believed, left)
-    beyond = left_over(left, form)
+    told = causes_of(heard, found, final, [held.named.get(k, held.weighed[k]) for k in held.kept])
+    causes = [cause for k, cause in zip(held.kept, told, strict=True) if k in held.named]
+    beside = [cause for k, cause in zip(held.kept, told, strict=True) if k not in held.named]
     channels = gaps(heard.held, heard.held.empty, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
-    better = predicting(ready, found, weighed, accepted, given)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
@@ -123,7 +113,8 @@ def diagnose(
         closed_loop=loops.gaps,
         where=places.listed,
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
-        candidates=judged(found, causes, chances, candidates),
+        beside=tuple(sorted(beside, key=lambda c: c.shrink.after - c.shrink.without_this)),
+        candidates=judged(found, causes, held.chances, candidates),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
@@ -140,10 +131,9 @@ def diagnose(
         moved=gather.moved(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,
-        predicting=better[0] if better else None,
     )
     report('done', 1.0)
-    return Outcome(diagnosis, evidence, repaired, weighed, better[1] if better else None)
+    return Outcome(diagnosis, evidence, repaired, held.weighed)
 
 
 def _searched(

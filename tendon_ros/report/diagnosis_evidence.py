@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from tendon_ros.diagnose.evidence import Evidence, Moved, Predicting, Trace
+from tendon_ros.diagnose.evidence import Evidence, Moved, Trace
 from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Judged
 from tendon_ros.effects import find
 from tendon_ros.report.blocks import Block, Columns, Details, Listing
 from tendon_ros.report.diagnosis_figures import channel_bars, rival_bars
 from tendon_ros.report.diagnosis_traces import rmse, telling, trace_figure, trace_words
-from tendon_ros.report.diagnosis_verdict import in_floors, prediction_words
+from tendon_ros.report.diagnosis_verdict import in_floors
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
-    effect_words,
     number,
     percent,
     place_words,
@@ -51,35 +50,8 @@ def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section
         sections.append(_considered(diagnosis, evidence))
     if evidence.floors or evidence.moved:
         sections.append(_basis(evidence))
-    if evidence.predicting is not None:
-        sections.append(_prediction(evidence.predicting))
     sections.append(_run(diagnosis, evidence))
     return tuple(sections)
-
-
-def _prediction(predicting: Predicting) -> Section:
-    """Return what predicts although it is not believed."""
-    rows = []
-    for cause in predicting.stand_ins:
-        values = []
-        for name, found in cause.parameters.items():
-            value, interval = with_interval(found.value, found.ci95, found.unit)
-            values.append(f'{name} {value} ({interval})')
-        factor, unit = scale(cause.shrink.unit, cause.shrink.without_this)
-        missed = (
-            f'{number(factor * cause.shrink.without_this)} → '
-            f'{number(factor * cause.shrink.after)} {unit}, {channel_words(cause.shrink.channel)}'
-        )
-        words = effect_words(cause.effect, cause.place)
-        rows.append((words, percent(cause.probability), ', '.join(values), missed))
-    header = ('stands in', 'probability', 'parameters', 'gap without it → with it')
-    words = prediction_words(predicting)
-    blocks = (
-        Prose(words[0].upper() + words[1:]),
-        Table(header, tuple(rows), wraps=True),
-        gap_table(predicting.gap),
-    )
-    return Section('For prediction', blocks, 'prediction')
 
 
 def gap_table(gaps: Sequence[ChannelGap]) -> Table:
@@ -230,8 +202,8 @@ def _run(diagnosis: Diagnosis, evidence: Evidence) -> Section:
         ),
         Prose(
             'Beside this page: diagnosis.json has the same in numbers; instrument.yaml is the '
-            'instrument file with the named effects, as simulator, estimator and diagnosis take '
-            'it.'
+            'instrument file with the effects that were found, as simulator, estimator and '
+            'diagnosis take it.'
         ),
     ]
     if diagnosis.left_out:

@@ -28,6 +28,7 @@ from tendon_ros.report.diagnosis_figures import (
     worth_bars,
 )
 from tendon_ros.report.diagnosis_verdict import (
+    beside_words,
     headline,
     in_floors,
     LABELS,
@@ -161,7 +162,29 @@ def _which(diagnosis: Diagnosis) -> Section:
     else:
         blocks += [bars] if bars.rows else []
         blocks += [Columns(tuple(cards))] if cards else []
+    if diagnosis.beside:
+        blocks += [Prose(beside_words(diagnosis)), _beside(diagnosis)]
     return Section('Which effects cause it', tuple(blocks), 'which')
+
+
+def _beside(diagnosis: Diagnosis) -> Table:
+    rows = []
+    for cause in diagnosis.beside:
+        values = []
+        for name, found in cause.parameters.items():
+            value, interval = with_interval(found.value, found.ci95, found.unit)
+            values.append(f'{name} {value} ({interval})')
+        channel, text = worth(diagnosis, cause)
+        rows.append(
+            (
+                effect_words(cause.effect, cause.place),
+                percent(cause.probability),
+                ', '.join(values),
+                f'{channel}: {text}' if channel else '',
+            )
+        )
+    header = ('effect', 'probability', 'parameters', 'where it shows most')
+    return Table(header, tuple(rows), 'Used, though not named.', wraps=True)
 
 
 def _card(diagnosis: Diagnosis, cause: Cause) -> Card:

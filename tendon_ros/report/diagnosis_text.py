@@ -6,13 +6,12 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from textwrap import wrap
 
-from tendon_ros.diagnose.evidence import Predicting
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
 from tendon_ros.report.diagnosis_verdict import (
+    beside_words,
     by_place,
     headline,
     in_floors,
-    prediction_words,
     worth,
 )
 from tendon_ros.report.diagnosis_words import (
@@ -31,12 +30,11 @@ _INDENT = 8
 _PLACES, _CAUSES, _CHANNELS, _NEXT = 3, 4, 6, 2
 
 
-def summary(diagnosis: Diagnosis, predicting: Predicting | None = None) -> str:
+def summary(diagnosis: Diagnosis) -> str:
     """
     Return what a terminal shows of a diagnosis: some ten to twenty-five lines.
 
     :param diagnosis: the answer.
-    :param predicting: what predicts better than the causes that are believed.
     :return: plain text, lines of at most 96 characters, ending in a newline.
     """
     lines = wrap(headline(diagnosis), _WIDTH)
@@ -47,8 +45,8 @@ def summary(diagnosis: Diagnosis, predicting: Predicting | None = None) -> str:
     lines += _part('gap', channel_rows(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
-    if predicting is not None:
-        lines += _part('predict', [prediction_words(predicting)])
+    if diagnosis.beside:
+        lines += _part('beside', [beside_words(diagnosis)])
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
     lines += _part('note', [f'left out: {text}' for text in diagnosis.left_out[:3]])
     # blanks that kept numbers and units on one line have done their work

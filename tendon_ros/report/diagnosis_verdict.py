@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from tendon_ros.diagnose.evidence import Predicting
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis, Where
 from tendon_ros.report.diagnosis_words import (
     channel_words,
@@ -39,34 +38,29 @@ _NAMED = 3  # more effects than that make a sentence unreadable
 
 def overall(diagnosis: Diagnosis) -> tuple[float, float]:
     """Return the gap before and after, over all channels, in noise standard deviations."""
-    return overall_of(diagnosis.gap)
-
-
-def overall_of(gaps: Sequence[ChannelGap]) -> tuple[float, float]:
-    """Return gaps before and after, over all channels, in noise standard deviations."""
-    known = [in_floors(g) for g in gaps if g.noise_floor > 0.0]
+    known = [in_floors(g) for g in diagnosis.gap if g.noise_floor > 0.0]
     if not known:
         return 0.0, 0.0
     before, after = np.sqrt(np.mean(np.square(known), axis=0))
     return float(before), float(after)
 
 
-def prediction_words(predicting: Predicting) -> str:
+def beside_words(diagnosis: Diagnosis) -> str:
     """
-    Return what there is for prediction beyond the causes that are believed.
+    Return what is used beside the named causes.
 
-    :param predicting: effects that stand in for others, and the gap with them.
+    :param diagnosis: the answer, with effects that foretell although they are not named.
     :return: plain text with numbers.
     """
-    before, after = (number(x) for x in overall_of(predicting.gap))
-    names = joined([inside(effect_words(c.effect, c.place)) for c in predicting.stand_ins])
-    many = len(predicting.stand_ins) > 1
+    before, after = (number(x) for x in overall(diagnosis))
+    effects = [inside(effect_words(c.effect, c.place)) for c in diagnosis.beside]
+    many = len(effects) > 1
+    names = joined(effects)
     return (
-        f'{names} {"are" if many else "is"} not believed, perhaps '
-        f'{"they stand" if many else "it stands"} in for something else, but '
-        f'{"foretell" if many else "foretells"} what no fit has seen: with '
-        f'{"them" if many else "it"} the gap falls from {before} to {after} noise deviations. '
-        'for_prediction.yaml has the model for simulator and estimator.'
+        f'{names[:1].upper()}{names[1:]} {"foretell" if many else "foretells"} what no fit has '
+        f'seen, but may stand in for something else. instrument.yaml has '
+        f'{"them" if many else "it"}: with all that it has, the gap of {before} noise deviations '
+        f'shrinks to {after}.'
     )
 
 
@@ -122,7 +116,10 @@ def headline(diagnosis: Diagnosis) -> str:
         place, share = where_words(diagnosis.where)
         lies = f' The largest part lies at {place} ({share}).'
     if not diagnosis.causes:
-        return f'Nothing in the catalogue explains the gap of {before} noise deviations.{lies}'
+        sure = ' with any certainty' if diagnosis.beside else ''
+        return (
+            f'Nothing in the catalogue explains the gap of {before} noise deviations{sure}.{lies}'
+        )
     named = _named(diagnosis.causes)
     does = 'explains' if len(diagnosis.causes) == 1 else 'explain'
     if diagnosis.verdict == 'unexplained':
@@ -133,8 +130,9 @@ def headline(diagnosis: Diagnosis) -> str:
     rest = [place_words(place) for place in diagnosis.unexplained.where[:2]]
     at = f' at {joined(rest)}' if rest else ''
     during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
+    shrinks = 'with what is only likely it shrinks' if diagnosis.beside else 'it shrinks'
     return (
-        f'{named[:1].upper()}{named[1:]} {does} part of the gap: it shrinks from {before} to '
+        f'{named[:1].upper()}{named[1:]} {does} part of the gap: {shrinks} from {before} to '
         f'{after} noise deviations. The rest{at}{during} is of no known cause.'
     )
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Predicting, Rival, Step, Trace
+from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Rival, Step, Trace
 from tendon_ros.diagnose.result import (
     Candidate,
     Cause,
@@ -307,6 +307,7 @@ def unexplained() -> Case:
             verdict='unexplained',
             gap=tuple(gap(c, 9.0 - k, 8.7 - k) for k, c in enumerate(CHANNELS)),
             causes=(),
+            beside=(stribeck(19.0, 9.1, 4.0).model_copy(update={'probability': 0.31}),),
             closed_loop=(),
             unexplained=Unexplained(probability=0.96, where=('pulley_3',), regime='reversal'),
         ),
@@ -319,10 +320,6 @@ def unexplained() -> Case:
             ),
             closed_loop=(),
             steps=(Step('', '', 7.7, 7.8),),
-            predicting=Predicting(
-                (stribeck(19.0, 9.1, 4.0).model_copy(update={'probability': 0.31}),),
-                (gap(CHANNELS[0], 9.0, 3.1),),
-            ),
         ),
     )
 

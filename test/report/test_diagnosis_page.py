@@ -127,10 +127,10 @@ def test_candidates_that_cannot_show_are_grouped_by_reason(page):
     assert 'Inertia pulley M, pulley L, pulley 1 leaves no trace at these speeds' in text
 
 
-def test_what_only_predicts_is_no_cause_and_said_to_be_none(page):
+def test_what_only_foretells_is_no_cause_and_said_to_be_none(page):
     said = text_of(page('unexplained'))
-    assert 'For prediction' in said
-    assert 'is not believed' in said
-    assert 'for_prediction.yaml' in said
+    assert 'None is named as a cause' in said
+    assert 'may stand in for something else' in said
+    assert 'Used, though not named.' in said
     assert '31 %' in said
-    assert 'For prediction' not in text_of(page('partly'))
+    assert 'Used, though not named.' not in text_of(page('partly'))

@@ -1,0 +1,85 @@
+"""
+Causes that make up for one another: which of them is there cannot be said, that one is can be.
+
+Each alone is hardly missed, since the others take over what it did; together they are missed
+much. Friction of a tool's spindle and of its jaw, between two torque sensors, are such.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import foretell, probability, signs_beside
+from tendon_ros.diagnose.naming import NAMED, Weighed
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.identify.fit import Fit
+
+#: times what each is missed alone that two causes must be missed together
+MAKES_UP = 2.0
+
+
+@dataclass(frozen=True)
+class Company:
+    """
+    Causes that make up for one another.
+
+    ``members``: which causes of the last state, most missed first; ``weighed``: the first of them
+    with all others as its equals, and what speaks for the company as one.
+    """
+
+    members: tuple[int, ...]
+    weighed: Weighed
+
+
+def companies(
+    ready: Prepared, found: Found, weighed: Sequence[Weighed], doubted: Collection[int]
+) -> list[Company]:
+    """
+    Return what is certain of causes that are each uncertain.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param weighed: its causes.
+    :param doubted: which of them are not named alone; events make up for nothing.
+    :return: the companies that can be named.
+    """
+    problem, final = ready.problem, found.final
+    causes = final.model.causes
+    lasting = [k for k in doubted if not causes[k].instants]
+    missed = {k: found.without[k].cost - final.cost for k in lasting}
+
+    def fitted_without(members: Collection[int]) -> Fit:
+        return problem.fitted(final.model.without(*members), rounds=6, accuracy=1e-3)
+
+    linked = []
+    for one, two in combinations(lasting, 2):
+        together = fitted_without((one, two)).cost - final.cost
+        if together > MAKES_UP * (missed[one] + missed[two]):
+            linked.append((one, two))
+    named = []
+    for members in _components(linked, len(causes)):
+        first, *others = sorted(members, key=lambda k: -missed[k])
+        without = fitted_without(members)
+        signs = signs_beside(problem, found, without)
+        if probability(signs) < NAMED or not foretell(ready, found, without):
+            continue
+        equal = [causes[k] for k in others]
+        equal += [e for k in (first, *others) for e in weighed[k].equal]
+        known = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
+        named.append(Company((first, *others), replace(weighed[first], equal=known, signs=signs)))
+    return named
+
+
+def _components(linked: Sequence[tuple[int, int]], count: int) -> list[tuple[int, ...]]:
+    """Return the sets of two or more that links hold together, each sorted."""
+    rows, columns = zip(*linked, strict=True) if linked else ((), ())
+    graph = coo_array(([1] * len(linked), (rows, columns)), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    sets = [tuple(k for k in range(count) if label[k] == n) for n in sorted({*label.tolist()})]
+    return [members for members in sets if len(members) > 1]

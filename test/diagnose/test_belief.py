@@ -1,0 +1,80 @@
+"""What makes up for one another is named as a set; what foretells is kept, named or not."""
+
+import pytest
+
+from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.company import companies
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+
+COULOMB = Candidate('coulomb_friction', 'pulley_3')
+TENSION = Candidate('tension_friction', 'pulley_3')
+GAIN = Candidate('torque_gain', 'motor_L')
+
+
+@pytest.fixture(scope='module')
+def found_of(bench, measured_on):
+    """Return a way to what a search would leave that ends with given causes, of one bench."""
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
+        ('torque_gain', 'motor_L', {'gain': 1.1}),
+    )
+    ready = prepared([run], bench)
+
+    def search(*begun):
+        problem = ready.problem
+        model = problem.empty
+        for candidate, values in begun:
+            model = model.joined(candidate, values)
+        start, final = problem.fitted(problem.empty), problem.fitted(model)
+        every = range(len(begun))
+        return ready, Found(
+            states=[start, final],
+            rivals=[[] for _ in every],
+            without=[problem.fitted(final.model.without(k)) for k in every],
+        )
+
+    return search
+
+
+@pytest.fixture(scope='module')
+def alike(found_of):
+    """Return a search that ended with two frictions of one pulley, and a torque constant."""
+    return found_of(
+        (COULOMB, {'torque': 0.05}), (TENSION, {'coefficient': 0.03}), (GAIN, {'gain': 1.1})
+    )
+
+
+def test_causes_that_make_up_for_one_another_are_certain_together(alike):
+    ready, found = alike
+    judged = belief(ready, found)
+    apart = [found.without[k].cost - found.final.cost for k in (0, 1)]
+    both = ready.problem.fitted(found.final.model.without(0, 1)).cost - found.final.cost
+    assert both > 2.0 * sum(apart)
+    [company] = companies(ready, found, judged.weighed, [0, 1])
+    first = max((0, 1), key=lambda k: apart[k])
+    assert company.members == (first, 1 - first)
+    assert company.weighed.cause == found.final.model.causes[first]
+    assert company.weighed.equal == (found.final.model.causes[1 - first],)
+    assert company.weighed.signs.worth > judged.weighed[first].signs.worth
+
+
+def test_causes_that_act_apart_are_no_company(alike):
+    ready, found = alike
+    weighed = belief(ready, found).weighed
+    assert companies(ready, found, weighed, [0, 2]) == []
+    assert companies(ready, found, weighed, [2]) == []
+    assert companies(ready, found, weighed, []) == []
+
+
+def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
+    ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
+    assert belief(ready, found).accepted == (0, 1)
+    monkeypatch.setattr('tendon_ros.diagnose.belief.chance', lambda *_: 0.2)
+    doubtful = belief(ready, found)
+    assert doubtful.named == {}
+    assert doubtful.accepted == ()
+    assert doubtful.kept == (0, 1)
+    assert doubtful.model(found, doubtful.kept) == found.final.model
