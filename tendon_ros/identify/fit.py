@@ -26,6 +26,7 @@ RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) f
 MOVES = 2
 FAINT = 0.1  # of the noise: changes below are mostly chance
 FAR = 0.3  # on its axis: what a guess may move until its derivative is taken anew
+BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way of guesses that a model is computed from
 CAREFUL = 1e-3  # accuracy from which on they are
 
 
@@ -180,7 +181,7 @@ class Problem(Unknowns):
         x = self.pack(model)
         x[still] = 0.0
         x = np.clip(x, bounds[:, 0], bounds[:, 1])
-        left = self.left(self.unpack(model, x))
+        x, left = self._computed(model, x, own)
         cost = float(left @ left + prior @ x**2)
         if not math.isfinite(cost):  # the model diverges: nothing to fit from here
             return Fit(self.unpack(model, x), left, np.zeros((len(left), len(axes))), math.inf)
@@ -230,6 +231,21 @@ class Problem(Unknowns):
             if before - cost <= accuracy * before:
                 break
         return Fit(self.unpack(model, x), left, slope, cost)
+
+    def _computed(self, model: Model, x: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:
+        """
+        Return unknowns from which the model can be computed, and what they leave.
+
+        Guesses that have gone far beside a cause may leave a model that diverges without it: they
+        go back towards the file.
+        """
+        trial = x.copy()
+        for part in BACK:
+            trial[own:] = part * x[own:]
+            left = self.left(self.unpack(model, trial))
+            if np.isfinite(left).all():
+                break
+        return trial, left
 
     def slopes(self, fit: Fit) -> dict[str, FloatArray]:
         """

@@ -124,3 +124,25 @@ def test_a_guessed_shape_of_the_curve_is_found(bench, measured_on):
     found = {(t.place, t.quantity): t.axis.value(z) for t, z in problem.moved(fit.model)}
     assert found['cable_L3', 'hardening'] == pytest.approx(1.4, abs=0.05)
     assert fit.cost / len(fit.left) < 1.3 < before
+
+
+def test_a_fit_that_cannot_be_computed_where_it_begins_goes_back_towards_the_file(
+    bench, measured_on, monkeypatch
+):
+    guessed = {'cable_L3.stiffness': math.inf}
+    problem = prepared([measured_on(bench)], replace(bench, tolerances=guessed)).problem
+    [at] = [n for n, t in enumerate(problem.tolerances) if t.guessed]
+    computed = problem.left
+
+    def diverging(model):
+        left = computed(model)
+        return left if abs(model.moved[at]) < 0.6 else np.full_like(left, np.inf)
+
+    monkeypatch.setattr(problem, 'left', diverging)
+    far = np.zeros(len(problem.tolerances))
+    far[at] = 2.0
+    fit = problem.fitted(replace(problem.empty, moved=far))
+    assert np.isfinite(fit.cost)
+    assert fit.cost < 1.2 * len(fit.left)
+    monkeypatch.setattr(problem, 'left', lambda model: np.full_like(computed(model), np.inf))
+    assert problem.fitted(replace(problem.empty, moved=far)).cost == math.inf
