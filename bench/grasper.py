@@ -30,7 +30,7 @@ from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
 FloatArray = NDArray[np.float64]
 
-TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in (2, 6))
+TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in (2, 8))
 EVERY = tuple(f'{speed}{load}' for speed in range(5) for load in range(10))
 SPINDLE = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
 MOTOR = ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort')

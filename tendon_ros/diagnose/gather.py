@@ -73,22 +73,22 @@ def steps(ready: Prepared, found: Found) -> tuple[Step, ...]:
     return tuple(rows)
 
 
-def floors(problem: Problem) -> tuple[Floor, ...]:
+def floors(heard: Prepared) -> tuple[Floor, ...]:
     """
     Return the noise of each channel, and how it was found.
 
-    :param problem: the bins.
+    :param heard: the problem.
     :return: the floors.
     """
+    how = (
+        'differences between neighbouring bins, and the counts of the motor encoders sent through '
+        'the model'
+    )
+    if heard.noise.repeated:
+        how += f'; what does not repeat itself, where {heard.noise.repeated} recordings repeat'
     return tuple(
-        Floor(
-            channel,
-            unit_of(channel),
-            value,
-            'differences between neighbouring bins, and the counts of the motor encoders '
-            'sent through the model',
-        )
-        for channel, value in noise_of(problem).items()
+        Floor(channel, unit_of(channel), value, how)
+        for channel, value in noise_of(heard.problem).items()
     )
 
 

@@ -2,8 +2,7 @@
 From admitted recordings to a least-squares problem: bins, contacts, noise, what is held out.
 
 Contacts belong to the surroundings, not to the instrument: whether the tip met one is found for
-each recording. Noise is what is left between neighbouring bins, and what the motion's counts make
-of every channel through the stiff cables.
+each recording.
 """
 
 from __future__ import annotations
@@ -16,21 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.identify.driving import encoder_channels
+from tendon_ros.diagnose.noise import Noise, noise_in
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.residuals import neighbours
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import (
     bin_length,
     loaded,
-    Measured,
-    reading_error,
     Segment,
     segment_of,
     SETTLING,
 )
-from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.signals import Signals
@@ -55,7 +50,7 @@ class Prepared:
     problem: Problem
     held: Problem
     whole: Problem
-    counts: tuple[tuple[FloatArray, ...], ...]
+    noise: Noise
     shift: int = 0
 
     def heard_again(self, model: Model) -> Prepared:
@@ -67,19 +62,20 @@ class Prepared:
         """
         rollouts = self.whole.rollouts
         predicted = rollouts.predicted(self.whole.uses(model))
+        before = rollouts.segments
         segments = [
-            segment.with_noise(
+            now.with_noise(
                 [
-                    np.minimum(m.noise, np.hypot(_heard(m, row, segment.period), by_counts))
-                    for m, row, by_counts in zip(segment.measured, rows, counts, strict=True)
+                    np.minimum(m.noise, n.noise)
+                    for m, n in zip(was.measured, now.measured, strict=True)
                 ],
-                counts,
+                shaped,
             )
-            for segment, rows, counts in zip(
-                rollouts.segments, predicted, self.counts, strict=True
+            for was, now, shaped in zip(
+                before, self.noise.given(before, predicted), self.noise.shaped, strict=True
             )
         ]
-        return _problems(rollouts.instrument, segments, self.counts, self.shift)
+        return _problems(rollouts.instrument, segments, self.noise, self.shift)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -104,7 +100,7 @@ class Prepared:
         :return: the problems.
         """
         rollouts = self.whole.rollouts
-        return _problems(rollouts.instrument, rollouts.segments, self.counts, shift)
+        return _problems(rollouts.instrument, rollouts.segments, self.noise, shift)
 
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepared:
@@ -118,14 +114,15 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepare
     period = bin_length(recordings, instrument)
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    noisy = [_with_noise(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    return _problems(instrument, [s for s, _ in noisy], tuple(c for _, c in noisy), 0)
+    noise = noise_in(instrument, segments, recordings)
+    predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
+    return _problems(instrument, noise.given(segments, predicted), noise, 0)
 
 
 def _problems(
     instrument: Instrument,
     segments: Sequence[Segment],
-    counts: tuple[tuple[FloatArray, ...], ...],
+    noise: Noise,
     shift: int,
 ) -> Prepared:
     rollouts = Rollouts(instrument, segments)
@@ -136,7 +133,7 @@ def _problems(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, usable),
-        counts,
+        noise,
         shift,
     )
 
@@ -222,65 +219,3 @@ def _posed(instrument: Instrument, segment: Segment) -> Segment:
     )
     inner = Rollouts(instrument, [resting]).rest()
     return replace(segment, pose=inner)
-
-
-def _with_noise(
-    instrument: Instrument, segment: Segment, recording: Recording
-) -> tuple[Segment, tuple[FloatArray, ...]]:
-    """Return a segment with the noise found in the data, and the part that counts make."""
-    [predicted] = Rollouts(instrument, [segment]).predicted([[]])
-    [disturbed] = Rollouts(
-        instrument, [replace(segment, motion=_recounted(instrument, segment, recording))]
-    ).predicted([[]])
-    window = max(3, round(1.0 / segment.period))
-    level = np.full(window, 1.0 / window)
-    counts = tuple(
-        np.sqrt(np.convolve((other - row) ** 2, level, mode='same')[: len(row)])
-        for row, other in zip(predicted, disturbed, strict=True)
-    )
-    noise = [
-        np.hypot(_heard(measured, row, segment.period), by_counts)
-        for measured, row, by_counts in zip(segment.measured, predicted, counts, strict=True)
-    ]
-    return segment.with_noise(noise, counts), counts
-
-
-def _heard(measured: Measured, predicted: FloatArray, period: float) -> float:
-    """Return the noise of a channel: what bins that are near each other do not share."""
-    left = measured.value - predicted
-    apart = neighbours(period)
-    # second differences: what a wrong model leaves of a motion is nearly straight for so long
-    bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
-    bend = bend[np.isfinite(bend)]
-    found = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if bend.size else 0.0
-    # a silent sensor would make any misfit infinite: a millionth of its range is noise
-    span = float(np.nanmax(np.abs(measured.value), initial=0.0))
-    return max(found, measured.floor, 1e-6 * span + 1e-12)
-
-
-def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:
-    """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
-    rows = []
-    sensors = {s.channel: s for s in instrument.sensors}
-    for row, name in enumerate(encoder_channels(instrument)):
-        motion = segment.motion.value[row]
-        error = reading_error(recording[name], sensors[name])
-        count = error * np.sqrt(12.0)
-        if count <= 0.0:
-            rows.append(motion)
-            continue
-        sampling = float(np.median(np.diff(recording[name].time)))
-        fine = np.interp(
-            np.arange(0.0, len(motion) * segment.period, sampling),
-            segment.period * np.arange(len(motion)),
-            motion,
-        )
-        counted = count * np.round(fine / count + 0.5) - 0.5 * count
-        again = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
-        rows.append(
-            np.interp(
-                segment.period * np.arange(len(motion)), sampling * np.arange(len(again)), again
-            )
-        )
-    rows += list(segment.motion.value[len(rows) :])
-    return Signals.smooth(segment.motion.start, segment.motion.step, np.array(rows))

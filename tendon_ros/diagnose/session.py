@@ -127,7 +127,7 @@ def diagnose(
         traces=gather.traces(heard, final.model),
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),
-        floors=gather.floors(heard.problem),
+        floors=gather.floors(heard),
         moved=gather.moved(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,
