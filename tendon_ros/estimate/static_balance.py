@@ -27,6 +27,8 @@ from tendon_ros.estimate.channels import (
     sensors_of,
 )
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
+from tendon_ros.estimate.play import Play
+from tendon_ros.estimate.rigid import Rigid, told_if_rigid
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
@@ -42,6 +44,8 @@ PROMISE = 1e-6
 TRIES = 60
 #: deviations by which every equation may be off for the measurement to be used
 REFUSED = 100.0
+#: deviations from which on the sides of a coupling's play are tried
+DOUBTFUL = 3.0
 #: velocities for the direction of friction are smoothed over this time [s]
 SMOOTHING = 0.02
 #: time in which the force may change by as much as it is uncertain at best [s]
@@ -97,6 +101,9 @@ class StaticBalanceObserver(Observer):
         self._unsure_angle = float(self._sigma_angle.max())
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
+        self._least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
+        self._rigid = Rigid(instrument, self._free)
+        self._play = Play(instrument, self._free, self._statics)
         self._reset()
 
     @staticmethod
@@ -159,8 +166,10 @@ class StaticBalanceObserver(Observer):
         angle = self._angle.copy()
         for name, i in self._angles:
             angle[i] = measurement.values[name]
-        if not self._begun:
-            angle[self._free] = self._rigid(angle)
+        carried = self._rigid.free(angle)
+        if self._begun:  # along with the measured angles: play is not crossed on the way
+            carried += self._angle[self._free] - self._rigid.free(self._angle)
+        angle[self._free] = carried
         moving = self._begun and gap > 0.0
         # velocity by angle, solved for along with the angle: taking the last one instead would
         # feed a noisy angle back through the damping
@@ -184,7 +193,7 @@ class StaticBalanceObserver(Observer):
         self._begun = True
         variance = max(float(covariance[-1, -1]), 1e-300)
         alone = 1.0 / max(1.0 / variance - self._expected[1] ** -2, 1e-300)
-        self._best = min(self._best, math.sqrt(alone))
+        self._best = max(self._least, min(self._best, math.sqrt(alone)))
         # what a model gets wrong does not average out
         self._spread = max(math.sqrt(variance), self._best)
         values = {
@@ -204,19 +213,33 @@ class StaticBalanceObserver(Observer):
         """Return the smoothed velocities [rad/s] if the angles now are these."""
         return np.asarray(self._drift + self._pace * (angle - self._angle))
 
-    def _rigid(self, angle: FloatArray) -> FloatArray:
-        """Return the free angles that leave every cable as it is: where a search may begin."""
-        fixed = [i for i in range(len(angle)) if i not in self._free]
-        routing = self._routing
-        found, *_ = np.linalg.lstsq(
-            routing[:, self._free], -routing[:, fixed] @ angle[fixed], rcond=None
-        )
-        return np.asarray(found)
-
     def _solve(self, angle: FloatArray, measurement: Measurement) -> tuple[float, FloatArray]:
         """Find free angles (in place) and force; return the force and the covariance of both."""
+        begun = angle.copy()
+        cost, force, rows, by_fixed = self._searched(angle, begun, measurement)
+        if cost > DOUBTFUL**2 * len(self._weight):
+            for across in self._play.sides(angle):
+                again = self._searched(across, begun, measurement)
+                if again[0] < cost:
+                    cost, force, rows, by_fixed = again
+                    angle[:] = across
+        if cost > REFUSED**2 * len(self._weight):
+            raise RecordingError(
+                f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
+                'or a sign may be wrong'
+            )
+        orthogonal, upper = np.linalg.qr(rows)
+        inverse = np.linalg.solve(upper, orthogonal.T)
+        covariance = inverse @ inverse.T
+        through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
+        return force, covariance + through @ through.T
+
+    def _searched(
+        self, angle: FloatArray, begun: FloatArray, measurement: Measurement
+    ) -> tuple[float, float, FloatArray, FloatArray]:
+        """Descend from angles (in place): cost, force, slopes by unknowns and measured angles."""
         force = self._force
-        start = angle[self._free].copy()
+        start = begun[self._free]
         cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
         for _ in range(TRIES):
             orthogonal, upper = np.linalg.qr(rows)
@@ -238,16 +261,7 @@ class StaticBalanceObserver(Observer):
             angle[:] = trial
             force += part * move[-1]
             cost, residual, rows, by_fixed = after
-        if cost > REFUSED**2 * len(self._weight):
-            raise RecordingError(
-                f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
-                'or a sign may be wrong'
-            )
-        orthogonal, upper = np.linalg.qr(rows)
-        inverse = np.linalg.solve(upper, orthogonal.T)
-        covariance = inverse @ inverse.T
-        through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
-        return force, covariance + through @ through.T
+        return cost, force, rows, by_fixed
 
     def _weighed(
         self, angle: FloatArray, start: FloatArray, force: float, measurement: Measurement

@@ -167,3 +167,25 @@ def test_a_reversal_is_not_taken_for_force(rms):
     assert off.max() < 0.4 * np.abs(truth).max()
     assert rms(off) < 0.15 * np.abs(truth).max()
     assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.9
+
+
+def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
+    """Inside the play the torque says nothing of the motor's angle, which side it is on or goes."""
+    tool = load_instrument('davinci_grasper')
+    rig = replace(
+        tool, effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),)
+    )
+    motion = {'duration': '6 s', 'amplitude': '70 deg'}
+    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=500.0)
+    channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
+    assert run['load_cell/torque'].value.max() > 0.05
+
+    def off():
+        found = estimate_recording(run, build(rig, 'static_balance', channels=channels))
+        estimate = found['estimate/torque']
+        return rms(estimate.value - run['load_cell/torque'].at(estimate.time))
+
+    assert off() < 0.005
+    monkeypatch.setattr('tendon_ros.estimate.play.Play.sides', lambda *_: [])
+    with pytest.raises(RecordingError, match='no angles and force balance'):
+        off()
