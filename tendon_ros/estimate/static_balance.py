@@ -42,8 +42,8 @@ CLOSE = 1e-9
 PROMISE = 1e-6
 #: most steps of one search; where cables go slack the last ones change nothing to speak of
 TRIES = 60
-#: deviations by which every equation may be off for the measurement to be used
-REFUSED = 100.0
+#: deviations by which every equation may be off, and for how many measurements in a row more
+REFUSED, IN_A_ROW = 100.0, 20
 #: deviations from which on the sides of a coupling's play are tried
 DOUBTFUL = 3.0
 #: velocities for the direction of friction are smoothed over this time [s]
@@ -160,6 +160,7 @@ class StaticBalanceObserver(Observer):
         self._best = math.inf  # spread that a single measurement left so far
         self._expected = (0.0, math.inf)
         self._rubbing = np.zeros(len(self._on_pulleys))
+        self._refused = 0
         self._begun = False
 
     def _update(self, measurement: Measurement, gap: float) -> Estimate:
@@ -198,7 +199,8 @@ class StaticBalanceObserver(Observer):
         self._spread = max(math.sqrt(variance), self._best)
         values = {
             self._operating.channel: force,
-            f'{self._operating.channel}_std': self._spread,
+            # what does not balance is known so much less
+            f'{self._operating.channel}_std': self._spread * self._strained,
             **estimated_angles(self._instrument, angle),
         }
         return Estimate(measurement.stamp_ns, values)
@@ -223,15 +225,18 @@ class StaticBalanceObserver(Observer):
                 if again[0] < cost:
                     cost, force, rows, by_fixed = again
                     angle[:] = across
-        if cost > REFUSED**2 * len(self._weight):
+        misfit = cost / len(self._weight)
+        self._refused = self._refused + 1 if misfit > REFUSED**2 else 0
+        if self._refused > IN_A_ROW:
             raise RecordingError(
-                f'{", ".join(self.needs)}: no angles and force balance this measurement; a unit '
+                f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
                 'or a sign may be wrong'
             )
         orthogonal, upper = np.linalg.qr(rows)
         inverse = np.linalg.solve(upper, orthogonal.T)
         covariance = inverse @ inverse.T
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
+        self._strained = math.sqrt(max(1.0, misfit))
         return force, covariance + through @ through.T
 
     def _searched(

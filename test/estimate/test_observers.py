@@ -187,5 +187,5 @@ def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
 
     assert off() < 0.005
     monkeypatch.setattr('tendon_ros.estimate.play.Play.sides', lambda *_: [])
-    with pytest.raises(RecordingError, match='no angles and force balance'):
+    with pytest.raises(RecordingError, match='a unit or a sign may be wrong'):
         off()
