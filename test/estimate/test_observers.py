@@ -170,7 +170,7 @@ def test_a_reversal_is_not_taken_for_force(rms):
 
 
 def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
-    """Inside the play the torque says nothing of the motor's angle, which side it is on or goes."""
+    """Inside the play the torque says nothing of the motor's angle, or of its side."""
     tool = load_instrument('davinci_grasper')
     rig = replace(
         tool, effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),)
