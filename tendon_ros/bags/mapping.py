@@ -44,6 +44,7 @@ import yaml
 from tendon_ros.bags.topics import place_of
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import FIELD_UNITS
+from tendon_ros.base.resources import config_path, installed
 
 _UNITS = pint.UnitRegistry()
 #: pint takes a count for a radian; an angle has to name one of these
@@ -198,18 +199,21 @@ def load_mapping(path: Path | str) -> Mapping:
     """
     Read and check a mapping file.
 
-    :param path: YAML file.
+    :param path: YAML file, or the name of a mapping that comes with the package.
     :return: the mapping.
     :raises RecordingError: on the first fault, with file, field and mend.
     """
     try:
-        data: Any = yaml.safe_load(Path(path).read_text(encoding='utf-8'))
+        file = installed(path, 'imports') or Path(path)
+        data: Any = yaml.safe_load(file.read_text(encoding='utf-8'))
         if not isinstance(data, dict):
             raise RecordingError(f'{path}: no fields; a mapping needs format, time and channels')
         return Mapping.model_validate(data)
     except OSError as error:
+        known = listed(file.stem for file in config_path('imports').glob('*.yaml'))
         raise RecordingError(
-            f'{path}: cannot be read ({error.strerror}); give the path of a mapping file'
+            f'{path}: cannot be read ({error.strerror}); give the path of a mapping file, or one '
+            f'of the mappings {known}'
         ) from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         detail = ' '.join(str(error).split())

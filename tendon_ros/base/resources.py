@@ -66,3 +66,18 @@ def config_path(relative: str | Path) -> Path:
     raise ResourceError(
         f'{path}: does not exist; {folder} has {listed(entry.name for entry in folder.iterdir())}'
     )
+
+
+def installed(name_or_path: str | Path, folder: str) -> Path | None:
+    """
+    Return a file that is given by its path, or by the name of one that comes with the package.
+
+    :param name_or_path: a path, or a name with or without ``.yaml``.
+    :param folder: below ``config``, that has such files.
+    :return: an existing file; None where there is none.
+    """
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    own = config_path(folder) / f'{path.name.removesuffix(".yaml")}.yaml'
+    return own if path.parent == Path() and own.is_file() else None

@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from tendon_ros.base.errors import InstrumentError, listed
-from tendon_ros.base.resources import config_path
+from tendon_ros.base.resources import config_path, installed
 from tendon_ros.model.instrument import Curve, Instrument
 from tendon_ros.model.instrument_build import built, curve
 from tendon_ros.model.instrument_schema import CurveSection, InstrumentSection, Section
@@ -29,16 +29,13 @@ def find_instrument(name_or_path: str | Path) -> Path:
     :return: an existing file.
     :raises InstrumentError: where there is none; the message lists the instruments that exist.
     """
-    path = Path(name_or_path)
-    if path.is_file():
-        return path
-    folder = config_path('instruments')
-    installed = {file.stem: file for file in folder.glob('*.yaml')}
-    if path.parent == Path() and path.name.removesuffix('.yaml') in installed:
-        return installed[path.name.removesuffix('.yaml')]
-    raise InstrumentError(
-        f'{path}: no such file; give a path, or one of the instruments {listed(installed)}'
-    )
+    path = installed(name_or_path, 'instruments')
+    if path is None:
+        known = listed(file.stem for file in config_path('instruments').glob('*.yaml'))
+        raise InstrumentError(
+            f'{name_or_path}: no such file; give a path, or one of the instruments {known}'
+        )
+    return path
 
 
 def load_instrument(name_or_path: str | Path) -> Instrument:

@@ -87,3 +87,15 @@ def test_an_unknown_name_lists_what_exists():
         resources.ResourceError, match=r'no_such\.yaml: does not exist; .*paper_rig'
     ):
         resources.config_path('instruments/no_such.yaml')
+
+
+def test_files_that_come_with_the_package_are_known_by_name(tmp_path):
+    own = tmp_path / 'mine.yaml'
+    own.write_text('{}')
+    assert resources.installed(own, 'imports') == own
+    assert resources.installed('davinci_grasper', 'imports') == resources.config_path(
+        'imports/davinci_grasper.yaml'
+    )
+    assert resources.installed('davinci_grasper.yaml', 'imports') is not None
+    assert resources.installed('nobody', 'imports') is None
+    assert resources.installed(tmp_path / 'davinci_grasper', 'imports') is None
