@@ -55,14 +55,17 @@ def play(
         stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
         found[stamp] = message.wrench.force.y, message.wrench.torque.z
 
-    node.create_subscription(WrenchStamped, '/instrument/body/measured_cf', note, 1000)
+    heard = node.create_subscription(WrenchStamped, '/instrument/body/measured_cf', note, 1000)
     topics = sorted({place_of(name)[0] for name in said[0].values})
     senders = {t: node.create_publisher(JointState, f'/instrument/{t}', 500) for t in topics}
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     try:
         end = time.monotonic() + patience
-        while any(not s.get_subscription_count() for s in senders.values()):
+        while not (
+            heard.get_publisher_count()
+            and all(s.get_subscription_count() for s in senders.values())
+        ):
             executor.spin_once(timeout_sec=0.1)
             if time.monotonic() > end or running.poll() is not None:
                 sys.exit('the estimator did not start')
@@ -121,8 +124,10 @@ def main() -> None:
     stamps = [m.stamp_ns for m in said]
     live = np.array([found.get(s, (np.nan, np.nan))[quantity == 'torque'] for s in stamps])
     came = np.isfinite(live)
-    off = np.abs(live - estimate.value)[came].max(initial=0.0)
     print(f'{came.sum()} estimates for {len(said)} measurements')
+    if not came.any():
+        sys.exit('nothing to compare')
+    off = np.abs(live - estimate.value)[came].max()
     print(f'largest difference from the batch {off:.3g}, of {np.ptp(estimate.value):.3g}')
 
 

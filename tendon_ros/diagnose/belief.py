@@ -24,14 +24,15 @@ class Belief:
     """
     Which causes of the last state of a search are believed.
 
-    ``weighed``, ``chances``: of each cause. ``named``: those that are named, with what speaks for
-    them; of causes that make up for one another the first is named for all. ``accepted``: these
-    and who is named through them. ``kept``: the accepted ones and what foretells beside them.
+    ``weighed``: each of them. ``named``: those that are named, with what speaks for them;
+    ``companies``: causes that make up for one another, of which the first is named for all.
+    ``accepted``: these and who is named through them. ``kept``: the accepted ones and what
+    foretells beside them.
     """
 
     weighed: tuple[Weighed, ...]
-    chances: tuple[float, ...]
     named: Mapping[int, Weighed]
+    companies: tuple[tuple[int, ...], ...]
     accepted: tuple[int, ...]
     kept: tuple[int, ...]
 
@@ -57,26 +58,34 @@ def belief(ready: Prepared, found: Found) -> Belief:
         prediction, since it will not happen again.
     """
     causes = found.final.model.causes
-    weighed = tuple(
-        Weighed(
-            cause,
-            tuple(r.candidate for r in equals(ready.problem, found, k)),
-            signs_beside(ready.problem, found, found.without[k]),
-        )
-        for k, cause in enumerate(causes)
-    )
-    chances = tuple(chance(ready, found, k, w.signs) for k, w in enumerate(weighed))
-    named = {k: weighed[k] for k, p in enumerate(chances) if p >= NAMED}
-    accepted = {*named}
+    weighed = tuple(_weighed(ready, found, k) for k in range(len(causes)))
+    named = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED}
     doubted = [k for k in range(len(causes)) if k not in named]
-    for company in companies(ready, found, weighed, doubted):
-        named[company.members[0]] = company.weighed
-        accepted |= {*company.members}
+    together = companies(ready, found, weighed, doubted)
+    named |= {company.members[0]: company.weighed for company in together}
+    accepted = {*named}.union(*(company.members for company in together))
     beside = {
         k
         for k, cause in enumerate(causes)
         if k not in accepted and not cause.instants and foretells(ready, found, k)
     }
     return Belief(
-        weighed, chances, named, tuple(sorted(accepted)), tuple(sorted(accepted | beside))
+        weighed,
+        named,
+        tuple(company.members for company in together),
+        tuple(sorted(accepted)),
+        tuple(sorted(accepted | beside)),
+    )
+
+
+def _weighed(ready: Prepared, found: Found, k: int) -> Weighed:
+    """Return what speaks for one cause of the last state."""
+    without = found.without[k]
+    signs = signs_beside(ready.problem, found, without)
+    return Weighed(
+        cause=found.final.model.causes[k],
+        equal=tuple(r.candidate for r in equals(ready.problem, found, k)),
+        signs=signs,
+        chance=chance(ready, found, k, signs),
+        without=without,
     )

@@ -7,7 +7,7 @@ much. Friction of a tool's spindle and of its jaw, between two torque sensors, a
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -38,7 +38,7 @@ class Company:
 
 
 def companies(
-    ready: Prepared, found: Found, weighed: Sequence[Weighed], doubted: Collection[int]
+    ready: Prepared, found: Found, weighed: Sequence[Weighed], doubted: Sequence[int]
 ) -> list[Company]:
     """
     Return what is certain of causes that are each uncertain.
@@ -46,7 +46,7 @@ def companies(
     :param ready: the problem.
     :param found: what the search has found.
     :param weighed: its causes.
-    :param doubted: which of them are not named alone; events make up for nothing.
+    :param doubted: which of them are not named alone, sorted; events make up for nothing.
     :return: the companies that can be named.
     """
     problem, final = ready.problem, found.final
@@ -54,25 +54,32 @@ def companies(
     lasting = [k for k in doubted if not causes[k].instants]
     missed = {k: found.without[k].cost - final.cost for k in lasting}
 
-    def fitted_without(members: Collection[int]) -> Fit:
-        return problem.fitted(final.model.without(*members), rounds=6, accuracy=1e-3)
+    fits: dict[tuple[int, ...], Fit] = {}
+
+    def without_all(members: tuple[int, ...]) -> Fit:
+        if members not in fits:
+            model = final.model.without(*members)
+            fits[members] = problem.fitted(model, rounds=6, accuracy=1e-3)
+        return fits[members]
 
     linked = []
     for one, two in combinations(lasting, 2):
-        together = fitted_without((one, two)).cost - final.cost
+        together = without_all((one, two)).cost - final.cost
         if together > MAKES_UP * (missed[one] + missed[two]):
             linked.append((one, two))
     named = []
     for members in _components(linked, len(causes)):
         first, *others = sorted(members, key=lambda k: -missed[k])
-        without = fitted_without(members)
+        without = without_all(members)
         signs = signs_beside(problem, found, without)
-        if probability(signs) < NAMED or not foretell(ready, found, without):
+        likely = probability(signs)
+        if likely < NAMED or not foretell(ready, found, without):
             continue
         equal = [causes[k] for k in others]
         equal += [e for k in (first, *others) for e in weighed[k].equal]
         known = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
-        named.append(Company((first, *others), replace(weighed[first], equal=known, signs=signs)))
+        whole = replace(weighed[first], equal=known, signs=signs, chance=likely, without=without)
+        named.append(Company((first, *others), whole))
     return named
 
 

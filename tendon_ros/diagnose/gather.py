@@ -73,22 +73,22 @@ def steps(ready: Prepared, found: Found) -> tuple[Step, ...]:
     return tuple(rows)
 
 
-def floors(heard: Prepared) -> tuple[Floor, ...]:
+def floors(problem: Problem) -> tuple[Floor, ...]:
     """
     Return the noise of each channel, and how it was found.
 
-    :param heard: the problem.
+    :param problem: the bins.
     :return: the floors.
     """
-    how = (
-        'differences between neighbouring bins, and the counts of the motor encoders sent through '
-        'the model'
-    )
-    if heard.noise.repeated:
-        how += f'; what does not repeat itself, where {heard.noise.repeated} recordings repeat'
     return tuple(
-        Floor(channel, unit_of(channel), value, how)
-        for channel, value in noise_of(heard.problem).items()
+        Floor(
+            channel,
+            unit_of(channel),
+            value,
+            'differences between neighbouring bins; the counts of the motor encoders sent through '
+            'the model; where a motion is repeated, what differs from one time to the next',
+        )
+        for channel, value in noise_of(problem).items()
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import shrink_of
 from tendon_ros.diagnose.intervals import parameter_intervals
-from tendon_ros.diagnose.judge import probability, Signs
+from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
@@ -25,38 +25,41 @@ OWN = 0.05
 
 @dataclass(frozen=True)
 class Weighed:
-    """A cause that was considered to the end, whoever equals it, and what speaks for it."""
+    """
+    A cause that was considered to the end.
+
+    ``equal``: whoever cannot be told from it; ``signs``: what speaks for it; ``chance``: the
+    probability that it is true, or one that equals it; ``without``: the fit without it.
+    """
 
     cause: Candidate
     equal: tuple[Candidate, ...]
     signs: Signs
+    chance: float
+    without: Fit
 
 
-def causes_of(
-    heard: Prepared, found: Found, final: Fit, accepted: Sequence[Weighed]
-) -> list[Cause]:
+def causes_of(heard: Prepared, start: Fit, final: Fit, kept: Sequence[Weighed]) -> list[Cause]:
     """
-    Return the causes that are named.
+    Return causes with their parameters, and what each is worth.
 
     :param heard: the problem.
-    :param found: what the search has found.
-    :param final: the fit of what is named.
-    :param accepted: what is named, in the order of that fit.
-    :return: the causes.
+    :param start: the fit without any.
+    :param final: the fit of what is kept.
+    :param kept: its causes, in the order of that fit.
+    :return: the causes in the same order.
     """
     intervals = parameter_intervals(heard.problem, final)
-    order = list(found.final.model.causes)
     causes = []
-    for n, weighed in enumerate(accepted):
+    for n, weighed in enumerate(kept):
         cause = weighed.cause
         values = final.model.values(n)
-        without = found.without[order.index(cause)].model
         names = dict.fromkeys((c.effect, c.place) for c in weighed.equal)
         causes.append(
             Cause(
                 effect=cause.effect,
                 place=cause.place,
-                probability=probability(weighed.signs),
+                probability=weighed.chance,
                 parameters={
                     p.name: FittedParameter(
                         value=values[p.name], unit=p.unit, ci95=intervals[n][p.name]
@@ -64,7 +67,7 @@ def causes_of(
                     for p in cause.parameters
                 },
                 indistinguishable=tuple(Named(effect=e, place=p) for e, p in names),
-                shrink=shrink_of(heard.held, found.start.model, without, final.model),
+                shrink=shrink_of(heard.held, start.model, weighed.without.model, final.model),
                 recording=cause.only,
             )
         )

@@ -29,75 +29,72 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True)
 class Noise:
     """
-    The noise that has a shape, beside what is heard.
+    What is known of the noise, whatever the model.
 
-    ``shaped``: what counts make, and what does not repeat itself, by recording and channel, shape
-    (bins,) each, in the channel's unit. ``repeated``: in how many recordings something is
-    repeated.
+    ``counts``: what the motion's counts make of each channel, by recording and channel, shape
+    (bins,) each, in the channel's unit.
     """
 
-    shaped: tuple[tuple[FloatArray, ...], ...]
-    repeated: int
+    counts: tuple[tuple[FloatArray, ...], ...]
 
     def given(self, segments: Sequence[Segment], predicted: Sequence[FloatArray]) -> list[Segment]:
         """
-        Return recordings with their noise.
+        Return recordings with their noise: what is heard, of counts, and does not repeat itself.
 
         :param segments: the recordings.
         :param predicted: of each the channels as a model has them, shape (channels, bins).
-        :return: the same with what is heard beside that model, and what has a shape.
+        :return: the same with the noise beside that model.
         """
-        return [
-            segment.with_noise(
-                [
-                    np.hypot(heard(m, row, segment.period), s)
-                    for m, row, s in zip(segment.measured, rows, shaped, strict=True)
-                ],
-                shaped,
-            )
-            for segment, rows, shaped in zip(segments, predicted, self.shaped, strict=True)
+        left = [
+            [m.value - row for m, row in zip(segment.measured, rows, strict=True)]
+            for segment, rows in zip(segments, predicted, strict=True)
         ]
+        found = []
+        for segment, rows, by_counts, apart in zip(
+            segments, left, self.counts, unrepeated(segments, left), strict=True
+        ):
+            noise, shaped = [], []
+            for m, row, c, a in zip(segment.measured, rows, by_counts, apart, strict=True):
+                h = heard(m, row, segment.period)
+                # what is heard and what counts make does not repeat itself either
+                shaped.append(np.sqrt(c**2 + max(0.0, a**2 - h**2 - float(np.mean(c**2)))))
+                noise.append(np.hypot(h, shaped[-1]))
+            found.append(segment.with_noise(noise, shaped))
+        return found
 
 
-def noise_in(
-    instrument: Instrument, segments: Sequence[Segment], recordings: Sequence[Recording]
+def noise_of_counts(
+    instrument: Instrument,
+    segments: Sequence[Segment],
+    recordings: Sequence[Recording],
+    predicted: Sequence[FloatArray],
 ) -> Noise:
     """
-    Find the noise that has a shape.
+    Find what the motion's counts make of every channel.
 
     :param instrument: the network.
     :param segments: the recordings on bins.
     :param recordings: the same as they were recorded.
+    :param predicted: of each the channels as the file has them, shape (channels, bins).
     :return: the noise.
     """
-    predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
-    left = [
-        [m.value - row for m, row in zip(segment.measured, rows, strict=True)]
-        for segment, rows in zip(segments, predicted, strict=True)
-    ]
-    apart = unrepeated(segments, left)
-    shaped = []
-    for n, (segment, recording) in enumerate(zip(segments, recordings, strict=True)):
-        row = []
-        counts = _counted(instrument, segment, recording, predicted[n])
-        for c, (m, by_counts) in enumerate(zip(segment.measured, counts, strict=True)):
-            # what is heard and what counts make does not repeat itself either
-            known = heard(m, predicted[n][c], segment.period) ** 2 + float(np.mean(by_counts**2))
-            row.append(np.hypot(by_counts, np.sqrt(max(0.0, apart[n][c] ** 2 - known))))
-        shaped.append(tuple(row))
-    return Noise(tuple(shaped), sum(any(row) for row in apart))
+    return Noise(
+        tuple(
+            _counted(instrument, segment, recording, rows)
+            for segment, recording, rows in zip(segments, recordings, predicted, strict=True)
+        )
+    )
 
 
-def heard(measured: Measured, predicted: FloatArray, period: float) -> float:
+def heard(measured: Measured, left: FloatArray, period: float) -> float:
     """
     Return the noise of a channel that bins near each other do not share.
 
     :param measured: the channel.
-    :param predicted: as a model has it, shape (bins,).
+    :param left: what a model leaves of it, shape (bins,), in its unit.
     :param period: of the bins [s].
     :return: one deviation, in its unit.
     """
-    left = measured.value - predicted
     apart = neighbours(period)
     # second differences: what a wrong model leaves of a motion is nearly straight for so long
     bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
@@ -110,17 +107,17 @@ def heard(measured: Measured, predicted: FloatArray, period: float) -> float:
 
 def _counted(
     instrument: Instrument, segment: Segment, recording: Recording, predicted: FloatArray
-) -> list[FloatArray]:
+) -> tuple[FloatArray, ...]:
     """Return what the motion's counts make of each channel, shape (bins,)."""
     [disturbed] = Rollouts(
         instrument, [replace(segment, motion=_recounted(instrument, segment, recording))]
     ).predicted([[]])
     window = max(3, round(1.0 / segment.period))
     level = np.full(window, 1.0 / window)
-    return [
+    return tuple(
         np.sqrt(np.convolve((other - row) ** 2, level, mode='same')[: len(row)])
         for row, other in zip(predicted, disturbed, strict=True)
-    ]
+    )
 
 
 def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:

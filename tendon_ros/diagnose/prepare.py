@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose.noise import Noise, noise_in
+from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import Rollouts
@@ -64,16 +64,14 @@ class Prepared:
         predicted = rollouts.predicted(self.whole.uses(model))
         before = rollouts.segments
         segments = [
-            now.with_noise(
-                [
-                    np.minimum(m.noise, n.noise)
-                    for m, n in zip(was.measured, now.measured, strict=True)
-                ],
-                shaped,
+            replace(
+                was,
+                measured=tuple(
+                    min(pair, key=lambda m: float(np.median(m.noise)))
+                    for pair in zip(was.measured, now.measured, strict=True)
+                ),
             )
-            for was, now, shaped in zip(
-                before, self.noise.given(before, predicted), self.noise.shaped, strict=True
-            )
+            for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
         return _problems(rollouts.instrument, segments, self.noise, self.shift)
 
@@ -114,8 +112,8 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepare
     period = bin_length(recordings, instrument)
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    noise = noise_in(instrument, segments, recordings)
     predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
+    noise = noise_of_counts(instrument, segments, recordings, predicted)
     return _problems(instrument, noise.given(segments, predicted), noise, 0)
 
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.form import at_once
+from tendon_ros.diagnose.form import at_once, tie
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
@@ -26,6 +26,8 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST = 5  # causes
 ROUNDS = 4  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
+#: part of the cost that a challenge has to leave for another look where much is left
+GAINED = 0.8
 #: deviations that a guess has to have moved to be suspected of standing for a cause
 ASTRAY = 0.5
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
@@ -103,17 +105,26 @@ class Search:
                 break
             # better causes may leave more to see: look again where a challenge has changed them
             self._challenge.of(found)
-            if found.final is state or hopeless(self.problem, found.start, found.final):
+            if found.final is state:
+                break
+            gained = found.final.cost < GAINED * state.cost
+            if hopeless(self.problem, found.start, found.final) and not gained:
                 break
             state = challenged = found.final
         self._ordered(found)
         return found
 
-    @staticmethod
-    def _better(one: Fit | None, other: Fit | None) -> Fit | None:
-        """Return the one of two states that leaves less, if there is one."""
+    def _better(self, one: Fit | None, other: Fit | None) -> Fit | None:
+        """Return the one of two states that leaves less; of two that do alike, the simpler one."""
         states = [fit for fit in (one, other) if fit is not None]
-        return min(states, key=lambda fit: fit.cost, default=None)
+        if not states:
+            return None
+        least = min(states, key=lambda fit: fit.cost)
+        alike = least.cost + tie(self.problem, least) * len(least.left)
+        return min(
+            (fit for fit in states if fit.cost <= alike),
+            key=lambda fit: (sum(map(len, fit.model.z)), fit.cost),
+        )
 
     def _from_the_file(self, found: Found) -> Fit | None:
         """

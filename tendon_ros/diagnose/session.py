@@ -23,11 +23,11 @@ from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.naming import causes_of, judged, verdict_of, Weighed
+from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
-from tendon_ros.diagnose.result import Diagnosis, Unexplained
+from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
@@ -92,12 +92,15 @@ def diagnose(
     left = problem.structured(believed.left)
     beyond = left_over(left, form_power(problem, found.start, believed))
     places = whereabouts(ready, found, held.accepted, believed, left)
-    model = held.model(found, held.kept)
+    # where there is no gap, there is nothing that anything could stand in for
+    kept = held.kept if held.named or beyond >= NAMED else ()
+    model = held.model(found, kept)
     heard = ready.heard_again(model)
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    told = causes_of(heard, found, final, [held.named.get(k, held.weighed[k]) for k in held.kept])
-    causes = [cause for k, cause in zip(held.kept, told, strict=True) if k in held.named]
-    beside = [cause for k, cause in zip(held.kept, told, strict=True) if k not in held.named]
+    weighed = [held.named.get(k, held.weighed[k]) for k in kept]
+    told = causes_of(heard, found.start, final, weighed)
+    causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]
+    beside = [cause for k, cause in zip(kept, told, strict=True) if k not in held.named]
     channels = gaps(heard.held, heard.held.empty, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
     report('running the patched instrument in closed loop', 0.92)
@@ -106,7 +109,10 @@ def diagnose(
     loops = closed_loop_gap(intake.recordings, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
     report('looking for what would separate the rest', 0.95)
-    ahead = next_experiments(instrument, sorted(measured), problem, found, jobs) if plan else ()
+    ahead: tuple[NextExperiment, ...] = ()
+    if plan:
+        names = sorted(measured)
+        ahead = next_experiments(instrument, names, problem, found, held.companies, jobs)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -114,7 +120,7 @@ def diagnose(
         where=places.listed,
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         beside=tuple(sorted(beside, key=lambda c: c.shrink.after - c.shrink.without_this)),
-        candidates=judged(found, causes, held.chances, candidates),
+        candidates=judged(found, causes, [w.chance for w in held.weighed], candidates),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
@@ -127,7 +133,7 @@ def diagnose(
         traces=gather.traces(heard, final.model),
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),
-        floors=gather.floors(heard),
+        floors=gather.floors(heard.problem),
         moved=gather.moved(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,

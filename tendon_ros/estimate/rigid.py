@@ -12,6 +12,9 @@ from tendon_ros.model.instrument import Instrument, Sensor
 
 FloatArray = NDArray[np.float64]
 
+#: part of what feels the force by which it turns with a sensor's pulley, below which it does not
+FEELS = 1e-6
+
 
 class Rigid:
     """
@@ -54,12 +57,13 @@ def told_if_rigid(
     motors = {m.name: m.pulley for m in instrument.motors}
     told = []
     for sensor in torques:
-        pulley = instrument.index(motors.get(sensor.of, sensor.of))
+        of = motors[sensor.of] if sensor.kind == 'motor_torque' else sensor.of
+        pulley = instrument.index(of)
         turned = np.zeros(len(instrument.pulleys))
         turned[pulley] = 1.0
         others = [i for i in range(len(turned)) if i != pulley]
         turned[others] = Rigid(instrument, others).free(turned)
         moved = abs(float(operating.torque @ turned))
-        if moved > 0.0:
+        if moved > FEELS * float(np.abs(operating.torque).max()):
             told.append(doubt(sensor) / moved)
     return min(told, default=0.0)

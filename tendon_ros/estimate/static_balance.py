@@ -50,7 +50,7 @@ DOUBTFUL = 3.0
 SMOOTHING = 0.02
 #: time in which the force may change by as much as it is uncertain at best [s]
 STEADY = 0.02
-#: prior deviation of an angle about the last one; keeps what no channel sees where it was [rad]
+#: prior deviation of an angle about where it was carried; holds what no channel sees [rad]
 WANDER = 1.0
 
 
@@ -189,6 +189,12 @@ class StaticBalanceObserver(Observer):
             self._doubt_friction(angle - self._angle, now, now - rubbed)
             if np.any(self._rubbing > BALANCE):  # it has turned round on the way: once more
                 force, covariance = self._solve(angle, measurement)
+        self._refused = self._refused + 1 if self._strained > REFUSED else 0
+        if self._refused > IN_A_ROW:
+            raise RecordingError(
+                f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
+                'or a sign may be wrong'
+            )
         self._angle = angle
         self._force = force
         self._begun = True
@@ -225,18 +231,11 @@ class StaticBalanceObserver(Observer):
                 if again[0] < cost:
                     cost, force, rows, by_fixed = again
                     angle[:] = across
-        misfit = cost / len(self._weight)
-        self._refused = self._refused + 1 if misfit > REFUSED**2 else 0
-        if self._refused > IN_A_ROW:
-            raise RecordingError(
-                f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
-                'or a sign may be wrong'
-            )
         orthogonal, upper = np.linalg.qr(rows)
         inverse = np.linalg.solve(upper, orthogonal.T)
         covariance = inverse @ inverse.T
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
-        self._strained = math.sqrt(max(1.0, misfit))
+        self._strained = math.sqrt(max(1.0, cost / len(self._weight)))
         return force, covariance + through @ through.T
 
     def _searched(

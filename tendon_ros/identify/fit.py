@@ -26,7 +26,7 @@ RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) f
 MOVES = 2
 FAINT = 0.1  # of the noise: changes below are mostly chance
 FAR = 0.3  # on its axis: what a guess may move until its derivative is taken anew
-BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way of guesses that a model is computed from
+BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
 CAREFUL = 1e-3  # accuracy from which on they are
 
 
@@ -236,14 +236,14 @@ class Problem(Unknowns):
         """
         Return unknowns from which the model can be computed, and what they leave.
 
-        Guesses that have gone far beside a cause may leave a model that diverges without it: they
-        go back towards the file.
+        Numbers of the file that have gone far beside a cause may leave a model that diverges
+        without it: they go back towards the file.
         """
         trial = x.copy()
         for part in BACK:
             trial[own:] = part * x[own:]
             left = self.left(self.unpack(model, trial))
-            if np.isfinite(left).all():
+            if math.isfinite(float(left @ left)):
                 break
         return trial, left
 

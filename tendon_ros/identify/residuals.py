@@ -196,7 +196,7 @@ class Residuals:
                 continue
             step = own[apart:] - own[:-apart]
             noise = 0.5 * float(step @ step) * len(own) / len(step)
-            # what keeps below what counts make is no gap, whatever its shape
+            # what keeps below noise that has a shape is no gap
             measured = self._segments[n].measured[c]
             beyond = float(own @ own) - max(noise, FLOOR * measured.counted * len(own))
             entry = power.setdefault(measured.sensor.channel, [0.0, 0.0])

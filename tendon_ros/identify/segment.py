@@ -37,7 +37,7 @@ class Measured:
     ``value``, shape (bins,), in the sensor's unit, NaN where nothing was measured; ``noise``,
     shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean;
     ``floor`` is what the sensor alone would by its data sheet; ``counted`` is the part of the
-    noise's power that counts make: what still encoders leave has a shape, and is noise.
+    noise's power that has a shape: what still encoders leave, and what does not repeat itself.
     """
 
     sensor: Sensor
@@ -80,16 +80,16 @@ class Segment:
     start: float = 0.0
     pushed: tuple[str, ...] = ()
 
-    def with_noise(self, noise: Sequence[FloatArray], counts: Sequence[FloatArray]) -> Segment:
+    def with_noise(self, noise: Sequence[FloatArray], shaped: Sequence[FloatArray]) -> Segment:
         """
         Return the same with another noise.
 
         :param noise: of each channel, shape (bins,).
-        :param counts: what the motion's counts make of each channel, shape (bins,).
+        :param shaped: the part of it that bins near each other share, shape (bins,).
         :return: the segment.
         """
         changed = []
-        for m, n, c in zip(self.measured, noise, counts, strict=True):
+        for m, n, c in zip(self.measured, noise, shaped, strict=True):
             counted = (c**2 + m.sensor.resolution**2 / 12.0) / n**2
             changed.append(replace(m, noise=n, counted=float(min(1.0, np.mean(counted)))))
         return replace(self, measured=tuple(changed))

@@ -109,7 +109,7 @@ def headline(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == 'explained' and diagnosis.causes:
         return (
             f'The gap of {before} noise deviations is explained by '
-            f'{_named(diagnosis.causes)}; it shrinks to {after}.'
+            f'{_named(diagnosis.causes)}; {_shrinks(diagnosis)} to {after}.'
         )
     lies = ''
     if diagnosis.where:
@@ -130,11 +130,14 @@ def headline(diagnosis: Diagnosis) -> str:
     rest = [place_words(place) for place in diagnosis.unexplained.where[:2]]
     at = f' at {joined(rest)}' if rest else ''
     during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
-    shrinks = 'with what is only likely it shrinks' if diagnosis.beside else 'it shrinks'
     return (
-        f'{named[:1].upper()}{named[1:]} {does} part of the gap: {shrinks} from {before} to '
-        f'{after} noise deviations. The rest{at}{during} is of no known cause.'
+        f'{named[:1].upper()}{named[1:]} {does} part of the gap: {_shrinks(diagnosis)} from '
+        f'{before} to {after} noise deviations. The rest{at}{during} is of no known cause.'
     )
+
+
+def _shrinks(diagnosis: Diagnosis) -> str:
+    return 'with what is only likely it shrinks' if diagnosis.beside else 'it shrinks'
 
 
 def _no_gap(diagnosis: Diagnosis) -> str:
