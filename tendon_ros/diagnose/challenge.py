@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+import math
 
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
@@ -79,6 +80,8 @@ class Challenge:
             state = found.final
             model = state.model.without(causes.index(one), causes.index(two))
             smaller = self._problem.fitted(model, self._problem.slopes(state), 8, 1e-3)
+            if not math.isfinite(smaller.cost):
+                continue
             among = [c for c in self._steps.candidates if c.place == one.place]
             proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
             rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
@@ -106,16 +109,26 @@ class Challenge:
                 self._steps.screened(Screen(self._problem, without, self._seen), [cause], among)
             )
         proposals = [p for p in proposals if p.candidate != cause]
-        rivals = self._steps.fitted(without, proposals, without.cost - found.final.cost)
+        missed = without.cost - found.final.cost
+        rivals = self._steps.fitted(without, proposals, missed, cause.effect)
         return self._sharpened(found, without, rivals)
 
     def _without(self, found: Found, k: int) -> Fit:
-        """Return the final state without one cause, everything else fitted again."""
+        """
+        Return the final state without one cause, everything else fitted again.
+
+        Where the rest alone cannot be computed, the best state so far that had not the cause.
+        """
         state = found.final
         if len(state.model.causes) == 1:
             return found.start
         known = self._problem.slopes(state)
-        return self._problem.fitted(state.model.without(k), known, rounds=8, accuracy=1e-3)
+        fit = self._problem.fitted(state.model.without(k), known, rounds=8, accuracy=1e-3)
+        if math.isfinite(fit.cost):
+            return fit
+        cause = state.model.causes[k]
+        others = [s for s in found.states if cause not in s.model.causes]
+        return min(others, key=lambda s: s.cost)
 
     def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
         """Return who might replace one of many causes: kin, and what explained much at a time."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+import math
 
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -65,12 +66,15 @@ def companies(
     linked = []
     for one, two in combinations(lasting, 2):
         together = without_all((one, two)).cost - final.cost
-        if together > MAKES_UP * (missed[one] + missed[two]):
+        # what cannot be computed without both says nothing
+        if MAKES_UP * (missed[one] + missed[two]) < together < math.inf:
             linked.append((one, two))
     named = []
     for members in _components(linked, len(causes)):
         first, *others = sorted(members, key=lambda k: -missed[k])
         without = without_all(members)
+        if not math.isfinite(without.cost):
+            continue
         signs = signs_beside(problem, found, without)
         likely = probability(signs)
         if likely < NAMED or not foretell(ready, found, without):

@@ -165,7 +165,10 @@ class Search:
             return None
         members = self._subset(screen, proposals, room)
         if not members:
-            return None
+            # numbers within tolerance that hide one beyond it cost more than what they leave
+            promising = [p for p in proposals if p.gain > LEAST * len(state.left)]
+            alone = self._alone(state, promising)
+            return alone if alone and self._believed(found, before, alone) else None
         model = state.model
         for member in members:
             candidate = member.proposal.candidate
@@ -219,7 +222,7 @@ class Search:
         return sets.best(LEAST * len(screen.left), most)
 
     def _ordered(self, found: Found) -> None:
-        """Replace the states by one for each cause, the one that is missed most first."""
+        """Replace the states by one for each cause that can be, what is missed most first."""
         final = found.final
         worth = [without.cost for without in found.without]
         order = sorted(range(len(worth)), key=lambda k: -worth[k])
@@ -227,5 +230,7 @@ class Search:
         for count in range(1, len(order)):
             model = final.model.without(*order[count:])
             known = self.problem.slopes(final)
-            states.append(self.problem.fitted(model, known, rounds=8, accuracy=1e-2))
+            fit = self.problem.fitted(model, known, rounds=8, accuracy=1e-2)
+            if np.isfinite(fit.cost):
+                states.append(fit)
         found.states = [*states, final] if order else states

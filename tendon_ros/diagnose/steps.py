@@ -26,6 +26,8 @@ SHORTLIST = 10  # rivals of a cause that are fitted
 CLEAR = 10.0
 #: part of what a fit would explain that first order is sure to see
 FIRST_ORDER_SEES = 0.4
+#: the same of the effect in question at other places
+KIN_SEEN = 0.1
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -97,20 +99,27 @@ class Steps:
             for p in proposals[:2]
             if p.candidate not in causes
         ]
-        first.sort(key=lambda p: -p.gain)
+        first.sort(key=lambda p: (not screen.suspects(p.candidate), -p.gain))
         again = list(self.pool.map(screen.corrected, first[:CORRECTED]))
         return sorted([*again, *first[CORRECTED:]], key=lambda p: -p.gain)
 
-    def fitted(self, state: Fit, proposals: Sequence[Proposal], needed: float) -> list[Rival]:
+    def fitted(
+        self, state: Fit, proposals: Sequence[Proposal], needed: float, kin: str = ''
+    ) -> list[Rival]:
         """
         Fit the proposals that may explain as much as is needed, each beside what holds already.
 
         :param state: what holds already.
         :param proposals: best first, one of each candidate.
         :param needed: by how much squares must fall.
+        :param kin: an effect that is asked at more places: one preload may do what another does.
         :return: the fits, best first.
         """
-        near = [p for p in proposals if p.gain > FIRST_ORDER_SEES * needed]
+        near = [
+            p
+            for p in proposals
+            if p.gain > (KIN_SEEN if p.candidate.effect == kin else FIRST_ORDER_SEES) * needed
+        ]
         chosen = near[:SHORTLIST] or list(proposals[:1])
         known = self.problem.slopes(state)
 

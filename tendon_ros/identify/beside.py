@@ -26,6 +26,7 @@ class Beside:
         prior = problem.prior(fit.model)
         ends = np.array([axis.ends for axis in problem.axes(fit.model)]).reshape(-1, 2).T
         self._slope = fit.slope
+        self._held = prior * x**2
         self._left = fit.left
         self._products = fit.slope.T @ fit.slope + np.diag(prior)
         self._pull = fit.slope.T @ fit.left + prior * x
@@ -40,17 +41,20 @@ class Beside:
 
         :param changes: what each size changes by one, shape (samples, sizes).
         :param reach: how far each size may go, shape (2, sizes).
-        :param still: an unknown that may not move beside them; None where all may.
+        :param still: an unknown that the change takes the place of: it does not move beside it,
+            and nothing holds it back any more; None where there is none.
         :return: by how much squares fall, and the sizes, shape (sizes,).
         """
         across = self._slope.T @ changes
         products = np.block([[self._products, across], [across.T, changes.T @ changes]])
         pull = np.concatenate([self._pull, changes.T @ self._left])
         bounds = np.concatenate([self._bounds, reach], axis=1)
+        freed = 0.0
         if still is not None:
             bounds[:, still] = 0.0
+            freed = float(self._held[still])
         fall, found = self._solved(products, pull, bounds)
-        return max(0.0, fall - self._alone), found[len(self._pull) :]
+        return max(0.0, fall - self._alone + freed), found[len(self._pull) :]
 
     def _solved(
         self, products: FloatArray, pull: FloatArray, bounds: FloatArray

@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 #: signatures by the proposals that they belong to
 Seen = dict[tuple[Candidate, tuple[float, ...]], NDArray[np.float32] | None]
 
+SUSPECT = 1.5  # deviations of a number of the file from which on its effect is suspected
 FARTHEST = 30.0  # typical sizes that a first proposal goes
 
 
@@ -116,6 +117,21 @@ class Screen:
                 found[judged] = None
         return sorted(found, key=lambda p: -p.gain)
 
+    def suspects(self, candidate: Candidate) -> bool:
+        """
+        Return whether a candidate is a number of the file that has moved far.
+
+        Several numbers that each move within their tolerances can hide one that is far beyond.
+
+        :param candidate: the candidate.
+        :return: whether; a first look does not see what it costs to hold numbers within.
+        """
+        j = self._own(candidate)
+        if j is None:
+            return False
+        moved = self.fit.model.moved[j - self.fit.slope.shape[1]]
+        return bool(abs(moved) > SUSPECT)
+
     def corrected(self, proposal: Proposal) -> Proposal:
         """
         Return a proposal judged at the sizes that it proposes.
@@ -123,7 +139,7 @@ class Screen:
         :param proposal: of this state.
         :return: the same candidate, its sizes corrected once more.
         """
-        if not proposal.sizes or proposal.gain <= 0.0:
+        if not proposal.sizes or (proposal.gain <= 0.0 and not self.suspects(proposal.candidate)):
             return proposal
         changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
         if changes is None:
