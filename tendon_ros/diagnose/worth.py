@@ -16,8 +16,9 @@ TAKES = 0.65
 HOPELESS, MOST_LEFT = 10.0, 0.15
 #: part of what is left in one channel that it must explain else
 HALF = 0.5
-#: times the form of other laws that an event must explain: it fits whatever they once get wrong
-TIMES_EVENT = 10.0
+#: times the form of other laws that an event must explain, for it fits whatever they once get
+#: wrong; or the part of what is left
+TIMES_EVENT, TAKES_EVENT = 10.0, 0.8
 
 
 def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
@@ -37,8 +38,8 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
         return False
     form = form_power(problem, start, before)
-    if eager:
-        return gain > TIMES_EVENT * form
+    if eager:  # what laws get wrong is not at one time
+        return gain > TIMES_EVENT * form or gain > TAKES_EVENT * problem.structured(before.left)
     # what the form of a law leaves has no other cause that would explain most of it
     if gain > form or gain > TAKES * problem.structured(before.left):
         return True
