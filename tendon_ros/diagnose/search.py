@@ -28,8 +28,9 @@ ROUNDS = 4  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
 GAINED = 0.8
-#: deviations that a guess has to have moved to be suspected of standing for a cause
-ASTRAY = 0.5
+#: deviations that a guess, and another number, has to have moved to be suspected of standing for
+#: a cause
+ASTRAY, PRESSED = 0.5, 2.0
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
 
@@ -92,7 +93,7 @@ class Search:
                     screen = Screen(self.problem, state, seen)
                     proposals = self._steps.screened(screen)
                 grown = self._grown(found, state, screen, proposals)
-                if turn == 0:
+                if turn == 0 and self._astray(found.start, grown):
                     grown = self._better(grown, self._from_the_file(found))
                 turn += 1
             if grown is not None:
@@ -126,15 +127,25 @@ class Search:
             key=lambda fit: (sum(map(len, fit.model.z)), fit.cost),
         )
 
-    def _from_the_file(self, found: Found) -> Fit | None:
+    def _astray(self, start: Fit, grown: Fit | None) -> bool:
         """
-        Return causes that are found beside the numbers of the file as they are.
+        Return whether the numbers of the file may be far off where a search began.
 
-        Guesses that had to do without the causes may end far off, where no cause helps any more.
+        They had to do without the causes: there, no cause may help any more, or a wrong one.
         """
-        guesses = [t.guessed for t in self.problem.tolerances]
-        if not np.abs(found.start.model.moved[guesses]).max(initial=0.0) > ASTRAY:
-            return None
+        guessed = np.array([t.guessed for t in self.problem.tolerances], dtype=bool)
+        moved = np.abs(start.model.moved)
+        if moved[guessed].max(initial=0.0) > ASTRAY:
+            return True
+        if not moved[~guessed].max(initial=0.0) > PRESSED:
+            return False
+        # one cause that leaves nothing is right wherever it was found
+        if grown is None or len(grown.model.causes) > 1:
+            return True
+        return open_question(self.problem, grown)
+
+    def _from_the_file(self, found: Found) -> Fit | None:
+        """Return causes that are found beside the numbers of the file as they are."""
         file = self.problem.fitted(self.problem.empty, rounds=0)
         screen = Screen(self.problem, file)
         proposals = self._steps.screened(screen)
