@@ -36,7 +36,7 @@ def gaps(held: Problem, start: Model, final: Model) -> tuple[ChannelGap, ...]:
 
     :param held: the bins that no fit has seen.
     :param start: what the instrument file says.
-    :param final: what is believed.
+    :param final: what was found.
     :return: the gaps of both.
     """
     before, after = offs(held, start), offs(held, final)

@@ -21,7 +21,7 @@ def traces(ready: Prepared, final: Model) -> tuple[Trace, ...]:
     Return every channel of every recording, measured and predicted.
 
     :param ready: the problem.
-    :param final: what is believed.
+    :param final: what was found.
     :return: the signals.
     """
     whole = ready.whole
@@ -97,7 +97,7 @@ def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
     Return the numbers of the file as they were fitted within their tolerances.
 
     :param problem: the bins.
-    :param final: the fit of what is believed.
+    :param final: the fit of what was found.
     :return: the numbers with their intervals.
     """
     spread = deviations(problem, final)

@@ -1,4 +1,4 @@
-"""The instrument file with what was found: accepted effects, and numbers within tolerance."""
+"""The instrument file with what was found: effects, and numbers within tolerance."""
 
 from __future__ import annotations
 

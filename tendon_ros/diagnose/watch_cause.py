@@ -89,12 +89,12 @@ def places_of(suspects: Sequence[Suspect]) -> tuple[str, ...]:
 
 def as_lasting(instrument: Instrument) -> tuple[Instrument, tuple[str, ...]]:
     """
-    Return an instrument whose accepted effects hold at any time.
+    Return an instrument whose effects hold at any time.
 
     Instants of a diagnosis count from the start of its recordings: what slipped then has slipped,
     and what lasted a while is over.
 
-    :param instrument: with the accepted effects.
+    :param instrument: with the effects of a diagnosis.
     :return: the instrument, and sentences on what was changed.
     """
     kept, said = [], []

@@ -41,7 +41,7 @@ class GapJudge:
     :param channel: its name.
     :param unit: its unit.
     :param ratio: times what is explained, or times the noise where that is more, a gap may reach.
-    :param explained: what the accepted effects leave, RMSE; NaN: the largest gap of the first
+    :param explained: what the effects of the file leave, RMSE; NaN: the largest gap of the first
         looks.
     :param learn: how many looks those are.
     """
@@ -91,7 +91,7 @@ class GapJudge:
 
 def gap_after(path: Path) -> Mapping[str, float]:
     """
-    Return the gap that the accepted effects of a diagnosis leave.
+    Return the gap that the effects of a diagnosed file leave.
 
     :param path: its ``diagnosis.json``.
     :return: RMSE by channel, in the channels' units.

@@ -43,6 +43,8 @@ class Play:
         """
         Return the angles with each coupling that has play wound up one way, and the other.
 
+        One coupling at a time: where several are on the wrong side at once, none may help.
+
         :param angle: [rad], shape (pulleys,).
         :return: twice as many angles as there are such couplings.
         """

@@ -43,7 +43,7 @@ PROGRAM = Program(
         Setting(
             'diagnosis',
             '',
-            'diagnosis.json whose gap after the accepted effects is what is explained, in place '
+            'diagnosis.json whose gap after its effects is what is explained, in place '
             'of learning',
         ),
         Setting('screen_period', 10.0, 'from one search for causes to the next', 's', 1.0, 3600.0),

@@ -2,11 +2,15 @@
 
 import pytest
 
+from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.identify.candidate import Candidate
+from tendon_ros.diagnose.search import Search
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.screening import Screen
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 TENSION = Candidate('tension_friction', 'pulley_3')
@@ -78,3 +82,42 @@ def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
     assert doubtful.accepted == ()
     assert doubtful.kept == (0, 1)
     assert doubtful.model(found, doubtful.kept) == found.final.model
+
+
+def test_a_preload_that_others_hide_within_their_tolerances_is_found(bench, measured_on):
+    # three cables in series: each a little looser does what one much looser does
+    press = {'trajectory': 'paper_fig12', 'settings': (), 'touching': True}
+    run = measured_on(
+        bench, ('pretension', 'cable_m1', {'scale': 0.87}), without=('pulley/',), **press
+    )
+    problem = prepared([run], bench).problem
+    state = problem.fitted(problem.empty)
+    suspect = Candidate('pretension', 'cable_m1')
+    screen = Screen(problem, state)
+    assert screen.suspects(suspect)
+    assert not screen.suspects(COULOMB)
+    [first] = screen.proposals(suspect)
+    # what it costs to hold the others within counts as well
+    assert screen.corrected(first).gain > max(2.0 * first.gain, 0.03 * len(state.left))
+    asked = [Candidate('pretension', f'cable_{n}') for n in ('m1', '12', 'L3')]
+    found = Search(problem, [*asked, Candidate('inertia', 'pulley_3')], jobs=1).run()
+    [cause] = found.final.model.causes
+    assert cause in asked
+    others = {r.candidate for r in equals(problem, found, 0)}
+    assert suspect in {cause, *others}
+    assert found.final.model.values(0)['scale'] == pytest.approx(0.87, abs=0.02)
+
+
+def test_what_is_doubted_is_in_the_instrument_and_said_apart(bench, measured_on, monkeypatch):
+    run = measured_on(bench, ('torque_gain', 'motor_L', {'gain': 1.1}))
+    monkeypatch.setattr('tendon_ros.diagnose.belief.chance', lambda *_: 0.2)
+    monkeypatch.setattr('tendon_ros.diagnose.session.next_experiments', lambda *_: ())
+    every = {c.effect for c in everyone(bench, sorted(run.channels), ())}
+    said = session.diagnose([run], bench, withhold=sorted(every - {'torque_gain'}))
+    assert said.diagnosis.causes == ()
+    assert said.diagnosis.verdict == 'unexplained'
+    [beside] = said.diagnosis.beside
+    assert (beside.effect, beside.place, beside.probability) == ('torque_gain', 'motor_L', 0.2)
+    assert [(e.effect, e.place) for e in said.instrument.effects] == [('torque_gain', 'motor_L')]
+    worst = said.diagnosis.gap[0]
+    assert worst.after < 0.3 * worst.before
