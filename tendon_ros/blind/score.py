@@ -92,6 +92,25 @@ def score(folder: Path, results: Path) -> Score:
     return summed(judgements, about, missing)
 
 
+def together(scores: Sequence[Score]) -> Score:
+    """
+    Put the scores of several benchmarks together.
+
+    :param scores: of different seeds or benches.
+    :return: one score of all cases.
+    :raises RecordingError: where nuisances differ: such cases are not of one kind.
+    """
+    first = scores[0].about
+    if any(s.about['nuisance'] != first['nuisance'] for s in scores):
+        raise RecordingError('the nuisances of the benchmarks differ: score them apart')
+    several = {
+        key: ', '.join(dict.fromkeys(str(s.about[key]) for s in scores))
+        for key in ('seed', 'kind', 'bench')
+    }
+    judgements = [j for s in scores for j in s.judgements]
+    return summed(judgements, {**first, **several}, sum(s.missing for s in scores))
+
+
 def summed(judgements: Sequence[Judgement], about: dict[str, Any], missing: int = 0) -> Score:
     """
     Sum up judged cases.

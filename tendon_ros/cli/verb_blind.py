@@ -31,6 +31,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     score = tasks.add_parser('score', help='compare the answers with the labels')
     score.add_argument('folder', type=Path, metavar='DIR')
     score.add_argument('results', type=Path, metavar='RESULTS')
+    score.add_argument(
+        '--with',
+        dest='others',
+        nargs=2,
+        action='append',
+        default=[],
+        type=Path,
+        metavar=('DIR', 'RESULTS'),
+        help='another seed or bench to put together with it; can be given several times',
+    )
     score.add_argument('--out', type=Path, metavar='FOLDER', help='for the page; RESULTS/score')
 
 
@@ -54,10 +64,11 @@ def _run(args: argparse.Namespace) -> None:
 
 
 def _score(args: argparse.Namespace) -> None:
-    from tendon_ros.blind.score import score
+    from tendon_ros.blind.score import score, together
     from tendon_ros.report.blind_page import score_markdown, write_scoreboard
 
-    scored = score(args.folder, args.results)
+    pairs = [(args.folder, args.results), *args.others]
+    scored = together([score(folder, results) for folder, results in pairs])
     folder = args.out or args.results / 'score'
     write_scoreboard(scored, folder)
     print(score_markdown(scored))

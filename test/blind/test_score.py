@@ -11,7 +11,7 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.blind.case import Settings
 from tendon_ros.blind.judge import judged
 from tendon_ros.blind.run import run
-from tendon_ros.blind.score import score, summed
+from tendon_ros.blind.score import score, summed, together
 from tendon_ros.blind.statistics import calibration_error, Fraction, reliability
 from tendon_ros.blind.store import make, read_json
 from tendon_ros.diagnose.result import Diagnosis
@@ -183,3 +183,22 @@ def test_a_run_sees_no_labels_goes_on_and_is_scored(tmp_path, monkeypatch):
     assert [j.right for j in total.judgements] == [False, True]
     with pytest.raises(RecordingError, match='blind run'):
         score(cases, tmp_path / 'empty')
+
+
+def test_scores_of_several_seeds_are_put_together_where_they_are_of_one_kind():
+    about = {'seed': 1000, 'kind': 'published', 'bench': 'bench', 'nuisance': 0.01}
+    one = summed([judged('case_0000', label('none'), answer('no_gap'))], about)
+    other = summed(
+        [judged('case_0000', label('none'), answer('unexplained'))],
+        {**about, 'seed': 1001, 'bench': 'other'},
+        missing=2,
+    )
+    both = together([one, other])
+    assert (both.about['seed'], both.about['bench']) == ('1000, 1001', 'bench, other')
+    assert both.about['kind'] == 'published'
+    assert len(both.judgements) == 2
+    assert both.missing == 2
+    assert '2 cases of seed 1000, 1001' in score_markdown(both)
+    rough = summed(list(one.judgements), {**about, 'nuisance': 0.03})
+    with pytest.raises(RecordingError, match='score them apart'):
+        together([one, rough])
