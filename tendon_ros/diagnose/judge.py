@@ -73,6 +73,10 @@ def probability(signs: Signs) -> float:
     return 1.0 / (1.0 + math.exp(-float(np.clip(WEIGHTS @ signs.features, -30.0, 30.0))))
 
 
+#: part of what laws may leave by which two places of a strong effect may differ by chance
+LAW = 0.02
+
+
 def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     """
     Return the rivals that these data cannot tell from a cause.
@@ -86,7 +90,7 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     """
     final = found.final
     samples = len(final.left)
-    allowed = tie(problem, final)
+    allowed = tie(problem, final) + LAW * form_power(problem, found.start, final)
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
