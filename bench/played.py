@@ -41,13 +41,13 @@ def play(
     """
     os.environ['ROS_DOMAIN_ID'] = str(random.randrange(1, 100))
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    running = subprocess.Popen(command)
     from geometry_msgs.msg import WrenchStamped
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from sensor_msgs.msg import JointState
 
     rclpy.init()
+    running = subprocess.Popen(command)
     node = rclpy.create_node('player')
     found: dict[int, tuple[float, float]] = {}
 

@@ -44,7 +44,7 @@ import yaml
 from tendon_ros.bags.topics import place_of
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import FIELD_UNITS
-from tendon_ros.base.resources import config_path, installed
+from tendon_ros.base.resources import installed, installed_names
 
 _UNITS = pint.UnitRegistry()
 #: pint takes a count for a radian; an angle has to name one of these
@@ -210,10 +210,9 @@ def load_mapping(path: Path | str) -> Mapping:
             raise RecordingError(f'{path}: no fields; a mapping needs format, time and channels')
         return Mapping.model_validate(data)
     except OSError as error:
-        known = listed(file.stem for file in config_path('imports').glob('*.yaml'))
         raise RecordingError(
             f'{path}: cannot be read ({error.strerror}); give the path of a mapping file, or one '
-            f'of the mappings {known}'
+            f'of the mappings {installed_names("imports")}'
         ) from error
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         detail = ' '.join(str(error).split())

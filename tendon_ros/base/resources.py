@@ -81,3 +81,13 @@ def installed(name_or_path: str | Path, folder: str) -> Path | None:
         return path
     own = config_path(folder) / f'{path.name.removesuffix(".yaml")}.yaml'
     return own if path.parent == Path() and own.is_file() else None
+
+
+def installed_names(folder: str) -> str:
+    """
+    Return the names by which :func:`installed` knows files, for a message.
+
+    :param folder: below ``config``, that has such files.
+    :return: the names, listed.
+    """
+    return listed(file.stem for file in config_path(folder).glob('*.yaml'))

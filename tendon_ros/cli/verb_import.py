@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 import sys
 
-HELP_MAPPING = 'what is what; a file, or the name of one that comes with the package'
 HELP = 'turn an npz, CSV or MAT file into bags, as a mapping file says'
 
 
@@ -17,7 +16,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     :param parser: of this verb.
     """
     parser.add_argument('file', metavar='FILE', help='npz, CSV or MAT file')
-    parser.add_argument('--mapping', required=True, metavar='MAP.yaml', help=HELP_MAPPING)
+    parser.add_argument(
+        '--mapping',
+        required=True,
+        metavar='MAP.yaml',
+        help='what is what; a file, or the name of one that comes with the package',
+    )
     parser.add_argument(
         '--out',
         required=True,

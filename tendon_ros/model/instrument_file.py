@@ -12,8 +12,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tendon_ros.base.errors import InstrumentError, listed
-from tendon_ros.base.resources import config_path, installed
+from tendon_ros.base.errors import InstrumentError
+from tendon_ros.base.resources import installed, installed_names
 from tendon_ros.model.instrument import Curve, Instrument
 from tendon_ros.model.instrument_build import built, curve
 from tendon_ros.model.instrument_schema import CurveSection, InstrumentSection, Section
@@ -31,9 +31,9 @@ def find_instrument(name_or_path: str | Path) -> Path:
     """
     path = installed(name_or_path, 'instruments')
     if path is None:
-        known = listed(file.stem for file in config_path('instruments').glob('*.yaml'))
         raise InstrumentError(
-            f'{name_or_path}: no such file; give a path, or one of the instruments {known}'
+            f'{name_or_path}: no such file; give a path, or one of the instruments '
+            f'{installed_names("instruments")}'
         )
     return path
 

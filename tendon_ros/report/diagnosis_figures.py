@@ -177,7 +177,7 @@ def rival_bars(rivals: Sequence[Rival], named: set[tuple[str, str]], most: int) 
     Return what each candidate explains alone.
 
     :param rivals: every candidate that was tried.
-    :param named: effect and place of the accepted causes.
+    :param named: effect and place of the named causes.
     :param most: how many to show.
     :return: bars: the part of the squared gap that goes when this candidate alone is added.
     """

@@ -33,6 +33,7 @@ from tendon_ros.report.diagnosis_verdict import (
     in_floors,
     LABELS,
     overall,
+    sizes,
     UNIT,
     where_words,
     worth,
@@ -170,16 +171,12 @@ def _which(diagnosis: Diagnosis) -> Section:
 def _beside(diagnosis: Diagnosis) -> Table:
     rows = []
     for cause in diagnosis.beside:
-        values = []
-        for name, found in cause.parameters.items():
-            value, interval = with_interval(found.value, found.ci95, found.unit)
-            values.append(f'{name} {value} ({interval})')
         channel, text = worth(diagnosis, cause)
         rows.append(
             (
                 effect_words(cause.effect, cause.place),
                 percent(cause.probability),
-                ', '.join(values),
+                sizes(cause),
                 f'{channel}: {text}' if channel else '',
             )
         )

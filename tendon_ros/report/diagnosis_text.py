@@ -12,6 +12,7 @@ from tendon_ros.report.diagnosis_verdict import (
     by_place,
     headline,
     in_floors,
+    sizes,
     worth,
 )
 from tendon_ros.report.diagnosis_words import (
@@ -22,7 +23,6 @@ from tendon_ros.report.diagnosis_words import (
     percent,
     place_words,
     scale,
-    with_interval,
 )
 
 _WIDTH = 96
@@ -75,12 +75,8 @@ def _where(diagnosis: Diagnosis) -> list[str]:
 
 
 def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
-    values = []
-    for name, found in cause.parameters.items():
-        value, interval = with_interval(found.value, found.ci95, found.unit)
-        values.append(f'{name} {value} ({interval})')
     words = effect_words(cause.effect, cause.place)
-    yield f'{percent(cause.probability)} {words}: {", ".join(values)}'.rstrip(' :')
+    yield f'{percent(cause.probability)} {words}: {sizes(cause)}'.rstrip(' :')
     if cause.recording:
         yield f'  in {cause.recording} alone'
     others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]

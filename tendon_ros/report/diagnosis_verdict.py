@@ -17,6 +17,7 @@ from tendon_ros.report.diagnosis_words import (
     percent,
     place_words,
     scale,
+    with_interval,
 )
 
 #: the verdict as a label
@@ -171,12 +172,26 @@ def _cause(cause: Cause) -> str:
     return f'{text} ({percent(cause.probability)})'
 
 
+def sizes(cause: Cause) -> str:
+    """
+    Return the parameters of a cause with their intervals.
+
+    :param cause: an effect that was found.
+    :return: plain text; empty where it has none.
+    """
+    values = []
+    for name, found in cause.parameters.items():
+        value, interval = with_interval(found.value, found.ci95, found.unit)
+        values.append(f'{name} {value} ({interval})')
+    return ', '.join(values)
+
+
 def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:
     """
     Return what a cause is worth in the channel where it shows most.
 
     :param diagnosis: the answer that the cause is part of.
-    :param cause: an accepted effect.
+    :param cause: an effect that was found.
     :return: the channel, and its RMSE without and with the cause; empty where none was judged.
     """
     shrink = cause.shrink
