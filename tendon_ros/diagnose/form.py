@@ -8,6 +8,7 @@ into another, all follow from how far laws may be from machines.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.worths import worths
+from tendon_ros.model.instrument import EffectUse
 
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
@@ -30,25 +32,56 @@ AT_ONCE = 0.5
 
 def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     """
-    Return what the laws of the causes may leave although they are the right ones.
+    Return what the laws of causes, and of the file's effects, may leave although they are right.
 
     :param problem: the data.
     :param start: without any cause.
     :param state: with them.
     :return: in noise power per sample.
     """
+    own = _own_power(problem, start)
     if not state.model.causes:
-        return 0.0
+        return own
     explained = max(0.0, start.cost - state.cost) / len(state.left)
-    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
-    forms = [
-        COUNTED if find(c.effect).hook == 'budget' and c.place in driven else find(c.effect).form
-        for c in state.model.causes
-    ]
+    forms = [_form(problem, c.effect, c.place) for c in state.model.causes]
     # what each is worth beside the others; what they share is shared out
     worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
-    return float(np.minimum(worth, explained) @ np.square(forms))
+    return own + float(np.minimum(worth, explained) @ np.square(forms))
+
+
+def _form(problem: Problem, effect: str, place: str) -> float:
+    """Return which part of what an effect does at a place its law may get wrong."""
+    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
+    known = find(effect)
+    return COUNTED if known.hook == 'budget' and place in driven else known.form
+
+
+#: of each problem, the state that was asked about last, and what the file's effects may leave
+_OWN: WeakKeyDictionary[Problem, tuple[Fit, float]] = WeakKeyDictionary()
+
+
+def _own_power(problem: Problem, start: Fit) -> float:
+    """Return what the laws of the file's own effects may leave, in noise power per sample."""
+    known = _OWN.get(problem)
+    if known is None or known[0] is not start:
+        known = _OWN[problem] = start, _left_by_own(problem, start)
+    return known[1]
+
+
+def _left_by_own(problem: Problem, start: Fit) -> float:
+    instrument = problem.rollouts.instrument
+    uses = problem.uses(start.model)
+    measured = problem.rollouts.measured
+    found = 0.0
+    for own in instrument.effects:
+        gone = EffectUse(own.effect, own.place, find(own.effect).neutral, instead=True)
+        predicted = problem.rollouts.predicted([[*row, gone] for row in uses])
+        left = problem.flat([m - p for m, p in zip(measured, predicted, strict=True)])
+        grown = float(left @ left - start.left @ start.left) / max(len(left), 1)
+        if np.isfinite(grown):
+            found += max(0.0, grown) * _form(problem, own.effect, own.place) ** 2
+    return found
 
 
 def tie(problem: Problem, best: Fit) -> float:

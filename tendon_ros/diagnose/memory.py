@@ -12,6 +12,7 @@ import contextlib
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class Memory:
                 return []
             return [
                 Model(
-                    tuple(Candidate(*c) for c in row['causes']),
+                    tuple(_candidate(*c) for c in row['causes']),
                     tuple(tuple(z) for z in row['z']),
                     dict(row['bristle']),
                     np.array(row['moved'], dtype=np.float64),
@@ -76,7 +77,7 @@ class Memory:
         """
         rows = [
             {
-                'causes': [[c.effect, c.place, c.only] for c in m.causes],
+                'causes': [[c.effect, c.place, c.only, c.given] for c in m.causes],
                 'z': [list(row) for row in m.z],
                 'bristle': dict(m.bristle),
                 'moved': m.moved.tolist(),
@@ -92,3 +93,7 @@ class Memory:
         """Drop what was remembered: the diagnosis is done."""
         with contextlib.suppress(OSError):
             self._path.unlink()
+
+
+def _candidate(effect: str, place: str, only: str, given: Sequence[Sequence[Any]]) -> Candidate:
+    return Candidate(effect, place, only, tuple((str(n), float(v)) for n, v in given))

@@ -12,6 +12,7 @@ from tendon_ros.diagnose.result import NextExperiment
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.excitation import separating, Suggestion, together
 from tendon_ros.identify.fit import Problem
+from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import Instrument
 
 #: a cause with its parameters
@@ -47,7 +48,7 @@ def next_experiments(
     model = found.final.model
     for open_ones, pairs in (*_rivals(problem, found), *_members(found, companies)):
         others = [c.use(model.values(n)) for n, c in enumerate(model.causes) if n not in open_ones]
-        settled = replace(instrument, effects=(*instrument.effects, *others))
+        settled = replace(instrument, effects=in_force(instrument.effects, others))
         try:
             suggestions = together(separating(settled, measured, pairs, jobs))
         except TendonError:

@@ -10,7 +10,8 @@ from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.cable import hardened
-from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
+from tendon_ros.model.effect_use import in_force
+from tendon_ros.model.instrument import contact_place, Curve, Instrument
 
 
 def patched(
@@ -26,11 +27,13 @@ def patched(
     :return: effects beside those of the file; inertias, dampings, preloads and stiffnesses moved
         within their tolerances; a loop whose stiffness moved has a curve of its own.
     """
-    moved = {
-        (t.place, t.quantity): t.axis.value(z)
+    far = [
+        (t, z)
         for t, z in problem.moved(model)
         if abs(t.axis.value(z) - t.axis.centre) > 1e-4 * t.axis.scale
-    }
+    ]
+    # what an effect of the file says already, that effect says anew
+    moved = {(t.place, t.quantity): t.axis.value(z) for t, z in far if not t.given}
     pulleys = tuple(
         replace(
             p,
@@ -66,11 +69,7 @@ def patched(
         for c in instrument.contacts
     )
     # a motor's torque constant is no number of the file: it stays an effect
-    gains = [
-        EffectUse(t.effect, t.place, {'gain': t.axis.value(z)})
-        for t, z in problem.moved(model)
-        if t.quantity == 'torque_gain'
-    ]
+    known = [t.use(z) for t, z in far if t.given or t.quantity == 'torque_gain']
     accepted = [
         cause.use(model.values(k))
         for k, cause in enumerate(model.causes)
@@ -84,7 +83,9 @@ def patched(
         couplings=couplings,
         curves=tuple(c for name, c in curves.items() if name in used),
         contacts=contacts,
-        effects=(*instrument.effects, *gains, *accepted, *bristles(model)),
+        effects=in_force(
+            instrument.effects, [*known, *accepted, *bristles(model, instrument.effects)]
+        ),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 from tendon_ros.base.errors import EffectError, listed
@@ -22,16 +22,23 @@ class Candidate:
     An effect at a place; with ``only``, in the one segment of that name.
 
     What happens at a time (a slip, a push) happens in one recording, or in each at its own.
+    ``given``: what the instrument file says of this effect at this place. The candidate then
+    stands instead of it: that the file is wrong about the effect.
     """
 
     effect: str
     place: str
     only: str = ''
+    given: tuple[tuple[str, float], ...] = ()
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The effect's parameters, but for what only a file's guess opens."""
-        return tuple(p for p in find(self.effect).parameters if p.search != 'guess')
+        """The effect's parameters, seen from what is given, but for what only a guess opens."""
+        known = dict(self.given)
+        own = [p for p in find(self.effect).parameters if p.search != 'guess']
+        if all(known.get(p.name, p.neutral) == p.neutral for p in own if not p.is_shape):
+            return tuple(own)  # what has no size has no shape either
+        return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
 
     @property
     def instants(self) -> tuple[Parameter, ...]:
@@ -60,7 +67,7 @@ class Candidate:
         :param values: by name, SI units.
         :return: the effect in use.
         """
-        return EffectUse(self.effect, self.place, dict(values))
+        return EffectUse(self.effect, self.place, dict(values), instead=bool(self.given))
 
     def acts_in(self, segment: str) -> bool:
         """
@@ -72,6 +79,15 @@ class Candidate:
         return self.only in ('', segment)
 
 
+def _seen_from(parameter: Parameter, value: float) -> Parameter:
+    """Return a parameter whose value in the file is what changes nothing."""
+    if parameter.is_shape:
+        return replace(parameter, typical=value)
+    step = parameter.typical - parameter.neutral
+    typical = value + step if parameter.low <= value + step <= parameter.high else value - step
+    return replace(parameter, neutral=value, typical=typical)
+
+
 def everyone(
     instrument: Instrument, measured: Sequence[str], withheld: Sequence[str] = ()
 ) -> tuple[Candidate, ...]:
@@ -81,8 +97,11 @@ def everyone(
     :param instrument: the network.
     :param measured: channels that were measured; effects on sensors that were not are left out.
     :param withheld: effects that are not to be considered, ``EFFECT`` or ``EFFECT@PLACE``.
-    :return: the candidates, in the catalogue's order.
+    :return: the candidates, in the catalogue's order; an effect that the file has at a place may
+        be another one there, unless the file says how well it is known: then it moves with all
+        other numbers, and is no cause.
     """
+    own = {(use.effect, use.place): use.parameters for use in instrument.effects}
     silent = {s.name for s in instrument.sensors if s.channel not in measured}
     found = []
     for effect in catalogue().values():
@@ -94,7 +113,13 @@ def everyone(
                 continue
             if effect.id in withheld or f'{effect.id}@{place}' in withheld:
                 continue
-            found.append(Candidate(effect.id, place))
+            one = Candidate(effect.id, place)
+            given = own.get((effect.id, place))
+            if given is not None and not one.instants:
+                if any(f'{place}.{effect.id}.{name}' in instrument.tolerances for name in given):
+                    continue
+                one = replace(one, given=tuple(sorted(given.items())))
+            found.append(one)
     return tuple(found)
 
 

@@ -37,6 +37,9 @@ class Coordinates:
             self._scale = abs(size.typical - size.neutral)
             reach = size.high * (1.0 if self._kind == 'phase' else parameters[self._shape].high)
             across = Axis(f'{size.name}_across', size.unit, -reach, reach, 0.0, self._scale)
+            # from there on both parts count: what changes nothing may have a size
+            whole = {p.name: p.typical if p.shapes_only else p.neutral for p in parameters}
+            self._origin = self._parts(whole) if size.neutral != 0.0 else (0.0, 0.0)
             axes = list(self.axes)
             axes[self._shape] = across
             self.axes = tuple(axes)
@@ -71,7 +74,10 @@ class Coordinates:
             for p, axis, place in zip(self._parameters, self.axes, z, strict=True)
         }
         if self._kind:
-            along, across = self._scale * z[self._size], self._scale * z[self._shape]
+            along, across = (
+                begun + self._scale * z[n]
+                for begun, n in zip(self._origin, (self._size, self._shape), strict=True)
+            )
             pair = _polar(along, across) if self._kind == 'phase' else _rest(along, across)
             for n, value in zip((self._size, self._shape), pair, strict=True):
                 p = self._parameters[n]
@@ -89,14 +95,19 @@ class Coordinates:
             axis.place(values[p.name]) for p, axis in zip(self._parameters, self.axes, strict=True)
         ]
         if self._kind:
-            size = values[self._parameters[self._size].name]
-            shape = values[self._parameters[self._shape].name]
-            if self._kind == 'phase':
-                pair = size * math.cos(shape), size * math.sin(shape)
-            else:
-                pair = size, size * shape
-            found[self._size], found[self._shape] = (part / self._scale for part in pair)
+            found[self._size], found[self._shape] = (
+                (part - begun) / self._scale
+                for part, begun in zip(self._parts(values), self._origin, strict=True)
+            )
         return tuple(found)
+
+    def _parts(self, values: Mapping[str, float]) -> tuple[float, float]:
+        """Return what a size and its phase, or its rest, make along and across."""
+        size = values[self._parameters[self._size].name]
+        shape = values[self._parameters[self._shape].name]
+        if self._kind == 'phase':
+            return size * math.cos(shape), size * math.sin(shape)
+        return size, size * shape
 
 
 def _polar(along: float, across: float) -> tuple[float, float]:

@@ -23,6 +23,7 @@ from tendon_ros.identify.rollout import modified, true_motion
 from tendon_ros.identify.segment import Segment, SETTLING
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import Tolerance
+from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
@@ -44,7 +45,7 @@ def _again(candidate: Candidate, values: Values) -> EffectUse:
             found[p.name] = EVENT
         elif p.search == 'duration':
             found[p.name] = min(found[p.name], LASTING)
-    return EffectUse(candidate.effect, candidate.place, found)
+    return candidate.use(found)
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Trial:
         self._base = touching(instrument, motion)
         self._sensed = tuple(sensed)
         self._truth = _again(*truth)
-        rig = replace(self._base, effects=(*self._base.effects, self._truth))
+        rig = replace(self._base, effects=in_force(self._base.effects, [self._truth]))
         rows, period = performed(rig, motion.trajectory(instrument.motor_names))
         names = [s.channel for s in instrument.sensors]
         angles = rows.reading[:, [names.index(c) for c in motor_channels(instrument)]].T
@@ -152,7 +153,7 @@ class Trial:
         free = len(candidate.parameters)
         values = candidate.coordinates.values(x[:free].tolist())
         moved = [t.use(float(z)) for t, z in zip(allowed, x[free:], strict=True) if z != 0.0]
-        return self._predicted([EffectUse(candidate.effect, candidate.place, values), *moved])
+        return self._predicted([candidate.use(values), *moved])
 
     def _weighed(
         self,
@@ -202,7 +203,7 @@ class Trial:
         along = drive or self._drive
         instrument = replace(
             self._base,
-            effects=(*self._base.effects, *uses),
+            effects=in_force(self._base.effects, uses),
             control_period=along.segment.period,
         )
         numbers = modified(instrument)

@@ -23,6 +23,7 @@ FloatArray = NDArray[np.float64]
 
 #: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
 #: takes more than its upper end is pre-sliding friction by name
+BENT = 'presliding_friction'
 BRISTLE = Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0)
 
 
@@ -84,18 +85,21 @@ class Model:
 def _dry_places(causes: Sequence[Candidate]) -> list[str]:
     """Return the pulleys whose dry friction needs an angle to build up over."""
     dry = {c.place for c in causes if find(c.effect).hook == 'budget'}
-    own = {c.place for c in causes if c.effect == 'presliding_friction'}
+    own = {c.place for c in causes if c.effect == BENT}
     return sorted(dry - own)
 
 
-def bristles(model: Model) -> list[EffectUse]:
+def bristles(model: Model, own: Sequence[EffectUse]) -> list[EffectUse]:
     """
     Return the effects that let dry friction build up over an angle.
 
     :param model: the model.
-    :return: one effect for each pulley with dry friction.
+    :param own: effects of the instrument file.
+    :return: one effect for each pulley with dry friction, but for those whose file knows better.
     """
+    known = {u.place for u in own if u.effect == BENT and u.parameters.get('torque', 0.0) != 0.0}
     return [
-        EffectUse('presliding_friction', place, {'torque': 0.0, 'angle': BRISTLE.value(z)})
+        EffectUse(BENT, place, {'torque': 0.0, 'angle': BRISTLE.value(z)}, instead=True)
         for place, z in model.bristle.items()
+        if place not in known
     ]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.effects import find
 from tendon_ros.identify.segment import Segment
+from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
 from tendon_ros.model.runner import Rows
@@ -132,7 +133,7 @@ class Rollouts:
         """Return what the model does along a segment, and its numbers with all effects."""
         segment = self.segments[n]
         base = self._base[n]
-        instrument = replace(base, effects=(*base.effects, *uses))
+        instrument = replace(base, effects=in_force(base.effects, uses))
         numbers = modified(instrument)
         rows = predict(
             instrument,
@@ -153,6 +154,7 @@ class Rollouts:
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
+        found = _as_held(rows, numbers, segment, found)
         reported = _as_reported(rows.instrument, numbers, segment, found, self._usual)
         return _zeroed(segment, reported)
 
@@ -217,6 +219,33 @@ def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:
     for row, measured in zip(found, segment.measured, strict=True):
         if not measured.sensor.zeroed:
             row += np.nanmean(measured.value - row)
+    return found
+
+
+def _as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -> FloatArray:
+    """
+    Return the predictions with what dry friction holds as the recording has it.
+
+    While a motor rests, dry friction takes any torque up to its limit, and no motion tells which:
+    there the measured torque stands for the prediction, as far as friction reaches and to within
+    a deviation of noise, so that holding still is no better than having nothing to hold.
+    """
+    motors = {m.name: (j, m.pulley) for j, m in enumerate(rows.instrument.motors)}
+    sensors = [s.name for s in rows.instrument.sensors]
+    for row, measured in zip(found, segment.measured, strict=True):
+        if measured.sensor.kind != 'motor_torque':
+            continue
+        j, pulley = motors[measured.sensor.of]
+        if pulley not in segment.prescribed or not rows.dry_limit[:, j].any():
+            continue
+        gain = numbers['motor_gain'][j]
+        if numbers['sensor_rectified'][sensors.index(measured.sensor.name)]:
+            continue  # a torque without its sign
+        still = segment.still[segment.prescribed.index(pulley)]
+        used, limit = rows.dry_friction[:, j] / gain, rows.dry_limit[:, j] / gain
+        held = np.clip(measured.value - row, used - limit, used + limit)
+        held = np.sign(held) * np.maximum(0.0, np.abs(held) - measured.noise)
+        row += np.where(still & np.isfinite(held), held, 0.0)
     return found
 
 

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import drives, motor_channels
@@ -26,6 +27,7 @@ BoolArray = NDArray[np.bool_]
 BINS = 20_000  # bins of all recordings together: minutes of data are seen more coarsely
 SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
+RESTING = 0.04  # [s] within which what moves has moved by a count
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 
 
@@ -66,7 +68,8 @@ class Segment:
     recording's start. ``motion`` drives ``prescribed`` pulleys. ``contacts`` are those that were
     there. ``pose`` is where the other pulleys began [rad]. ``pushed`` are pulleys on which a
     known torque acts, of a motor without encoder or of a measured load; torques follow the motions
-    in ``motion``.
+    in ``motion``. ``still``: of each prescribed pulley, shape (bins,), where its motion cannot be
+    told from rest.
     """
 
     name: str
@@ -79,6 +82,7 @@ class Segment:
     pose: Mapping[str, float]
     start: float = 0.0
     pushed: tuple[str, ...] = ()
+    still: tuple[BoolArray, ...] = ()
 
     def with_noise(self, noise: Sequence[FloatArray], shaped: Sequence[FloatArray]) -> Segment:
         """
@@ -149,7 +153,24 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         pose={},
         start=start,
         pushed=tuple(d.pulley for d in driving if d.by_torque),
+        still=tuple(
+            _still(row, reading_error(recording[d.sensor.channel], d.sensor), period)
+            for d, row in zip(driving, rows, strict=True)
+            if not d.by_torque
+        ),
     )
+
+
+def _still(angle: FloatArray, error: float, period: float) -> BoolArray:
+    """Return where a motion stays within a count or turns, and the bins beside."""
+    window = max(3, round(RESTING / period))
+    travel = maximum_filter1d(angle, window) - minimum_filter1d(angle, window)
+    rests: BoolArray = travel < max(np.sqrt(12.0) * error, 1e-12)
+    step = np.diff(angle)
+    rests[1:-1] |= step[1:] * step[:-1] <= 0.0
+    # what rests in the middle of a window rests in all of it; and a smooth motion knows neither
+    # when rest began nor when it ended
+    return maximum_filter1d(rests.astype(np.int8), window) > 0
 
 
 def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatArray:

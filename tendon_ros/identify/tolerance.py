@@ -28,13 +28,18 @@ SOME_DAMPING = 0.01
 
 @dataclass(frozen=True)
 class Tolerance:
-    """One number of the file that may move: the effect that moves it, and how far it may."""
+    """
+    One number of the file that may move: the effect that moves it, and how far it may.
+
+    ``given``: the file has this effect there already, and its parameter moves.
+    """
 
     effect: str
     place: str
     quantity: str
     parameter: str
     axis: Axis
+    given: bool = False
 
     @property
     def guessed(self) -> bool:
@@ -48,7 +53,8 @@ class Tolerance:
         :param z: its place on the axis.
         :return: the effect in use.
         """
-        return EffectUse(self.effect, self.place, {self.parameter: self.axis.value(z)})
+        value = {self.parameter: self.axis.value(z)}
+        return EffectUse(self.effect, self.place, value, instead=self.given)
 
     def is_moved_by(self, cause: Candidate) -> bool:
         """
@@ -68,20 +74,24 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
 
     :param instrument: the network.
     :return: its inertias, dampings, preloads and stiffnesses, with the tolerance of the file or,
-        where it names none, that of a careful measurement; torque constants and contact positions
-        where the file gives a tolerance.
+        where it names none, that of a careful measurement; torque constants, contact positions
+        and parameters of the file's effects where it gives a tolerance.
     """
     stated = instrument.tolerances
-    found: list[Tolerance] = []
+    own = {(use.effect, use.place): use.parameters for use in instrument.effects}
+    found = list(_of_effects(instrument))
+    taken = {(t.effect, t.place, t.parameter) for t in found}
 
     def movable(effect: str, place: str, quantity: str, axis: Axis | None) -> None:
-        if axis is None:
-            return
         parameter = _moving(effect, quantity)
+        if axis is None or (effect, place, parameter.name) in taken:
+            return
+        given = own.get((effect, place))
+        if given is not None:
+            axis = _about(axis, given[parameter.name], parameter.neutral == 1.0)
         # beyond what the effect can be, nothing can be computed
-        low, high = max(axis.low, parameter.low), min(axis.high, parameter.high)
-        within = replace(axis, low=low, high=high)
-        found.append(Tolerance(effect, place, quantity, parameter.name, within))
+        within = _within(axis, parameter)
+        found.append(Tolerance(effect, place, quantity, parameter.name, within, given is not None))
 
     for effect, place, quantity, usual in _factors(instrument):
         axis = _factor(
@@ -117,6 +127,44 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
         yield 'torque_gain', f'motor_{motor.name}', 'torque_gain', 0.0
     for contact in instrument.contacts:
         yield 'contact_stiffness', contact_place(instrument, contact), 'stiffness', MEASURED
+
+
+def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:
+    """Yield what the file says of how well it knows the parameters of its own effects."""
+    for use in instrument.effects:
+        for p in find(use.effect).parameters:
+            name = f'{use.effect}.{p.name}'
+            spread = instrument.tolerances.get(f'{use.place}.{name}', 0.0)
+            value = use.parameters.get(p.name, p.neutral)
+            if spread == 0.0 or p.search in ('instant', 'duration'):
+                continue
+            if not math.isinf(spread):
+                scale = spread if p.unit == 'rad' else spread * abs(value)
+                reach = REACH * scale
+                axis = Axis(name, p.unit, value - reach, value + reach, value, scale, spread=1.0)
+            elif p.low > 0.0 and value > 0.0:
+                axis = Axis(name, p.unit, p.low, p.high, value, 0.5, log=True, spread=REACH)
+            else:
+                least = p.typical if p.shapes_only else p.typical - p.neutral
+                scale = max(0.5 * abs(value), abs(least))
+                axis = Axis(name, p.unit, p.low, p.high, value, scale, spread=10.0)
+            yield Tolerance(use.effect, use.place, name, p.name, _within(axis, p), given=True)
+
+
+def _within(axis: Axis, parameter: Parameter) -> Axis:
+    """Return an axis that ends where its effect does."""
+    low, high = max(axis.low, parameter.low), min(axis.high, parameter.high)
+    return replace(axis, low=low, high=high)
+
+
+def _about(axis: Axis, value: float, factor: bool) -> Axis:
+    """Return the axis of a number that an effect of the file has changed already."""
+    if not factor:
+        low, high, centre = axis.low + value, axis.high + value, axis.centre + value
+        return replace(axis, low=low, high=high, centre=centre)
+    scale = axis.scale if axis.log else value * axis.scale
+    low, high, centre = value * axis.low, value * axis.high, value * axis.centre
+    return replace(axis, low=low, high=high, centre=centre, scale=scale)
 
 
 def _moving(effect: str, quantity: str) -> Parameter:

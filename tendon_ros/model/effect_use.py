@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.effects import find
@@ -59,3 +60,23 @@ def checked_use(
             )
         values[parameter.name] = value
     return EffectUse(effect, place, values)
+
+
+def in_force(own: Sequence[EffectUse], uses: Sequence[EffectUse]) -> tuple[EffectUse, ...]:
+    """
+    Return the effects that act where an instrument has effects and others are added.
+
+    :param own: of the instrument.
+    :param uses: what is added, and what stands instead of an effect of the instrument.
+    :return: all of them.
+    """
+    found = list(own)
+    for use in uses:
+        name = (use.effect, use.place)
+        old = next((n for n, u in enumerate(own) if (u.effect, u.place) == name), None)
+        if use.instead and old is not None:
+            changed = {**found[old].parameters, **use.parameters}
+            found[old] = replace(found[old], parameters=changed)
+        else:
+            found.append(replace(use, instead=False))
+    return tuple(found)

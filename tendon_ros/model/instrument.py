@@ -154,11 +154,17 @@ class Sensor:
 
 @dataclass(frozen=True)
 class EffectUse:
-    """An effect in force at a place, with its parameters in SI units."""
+    """
+    An effect in force at a place, with its parameters in SI units.
+
+    With ``instead`` it changes the parameters of the effect that the instrument has there
+    already, where it has one, and does not act beside it.
+    """
 
     effect: str
     place: str
     parameters: Mapping[str, float]
+    instead: bool = False
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,21 @@ class Rows:
         return self._columns(start, self.structure['K'])
 
     @property
+    def dry_friction(self) -> FloatArray:
+        """Torque of dry friction on each motor's pulley [N m], shape (ticks, motors)."""
+        return self._columns(self._dry, self.structure['U'])
+
+    @property
+    def dry_limit(self) -> FloatArray:
+        """The most that it could be there [N m], shape (ticks, motors)."""
+        return self._columns(self._dry + self.structure['U'], self.structure['U'])
+
+    @property
+    def _dry(self) -> int:
+        at = self.structure
+        return int(1 + 2 * at['N'] + at['U'] + at['M'] + at['K'])
+
+    @property
     def reading(self) -> FloatArray:
         """What the sensors say, shape (ticks, sensors), in the instrument's order of sensors."""
         return self._columns(

@@ -104,7 +104,8 @@ class Structure:
         }  # fmt: skip
         sizes['STATES'] = sizes['N'] + sizes['U'] + 2 * sizes['M']
         sizes['DIM'] = 2 * sizes['N'] + sizes['STATES']
-        sizes['WIDTH_ROW'] = 1 + 2 * sizes['N'] + sizes['U'] + sizes['M'] + sizes['K'] + sizes['Q']
+        own = 1 + 2 * sizes['N'] + 3 * sizes['U'] + sizes['M'] + sizes['K']
+        sizes['WIDTH_ROW'] = own + sizes['Q']
         out: dict[str, int | tuple[int, ...]] = dict(sizes)
         for array, places in PLACES.items():
             at = 0

@@ -19,7 +19,8 @@ class Line:
 
     def __init__(self, value):
         time = PERIOD * (np.arange(BINS) + 0.5)
-        sensor = next(s for s in load_instrument('single_body').sensors if 'effort' in s.channel)
+        self.instrument = load_instrument('single_body')
+        sensor = next(s for s in self.instrument.sensors if 'effort' in s.channel)
         measured = Measured(sensor, value, np.full(BINS, 0.01), 0.0)
         self.segments = (Segment('line', PERIOD, time, (), Signals.none(), (measured,), (), {}),)
         self.measured = (value[None, :],)

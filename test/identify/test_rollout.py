@@ -8,6 +8,7 @@ import pytest
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
 
 INJECTED = {
     'friction': ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
@@ -67,3 +68,45 @@ def test_a_sensor_without_a_zero_tells_no_offset(bench, measured_on):
     sensors = tuple(replace(s, zeroed=s.name != 'encoder_3') for s in bench.sensors)
     assert misfit(prepared([run], bench).problem) > 10.0
     assert misfit(prepared([run], replace(bench, sensors=sensors)).problem) < 1.2
+
+
+@pytest.fixture(scope='module')
+def stopping():
+    """Return a body on a motor that rubs with 0.2 N m, as a problem, and where it rests."""
+    body = load_instrument('single_body')
+
+    def problem_of(run):
+        problem = prepared([run], body).problem
+        [segment] = problem.rollouts.segments
+        return problem, segment.still[0]
+
+    return body, problem_of
+
+
+@pytest.mark.parametrize(('limit', 'held'), [(0.2, True), (0.3, True), (0.1, False)])
+def test_a_motor_at_rest_holds_what_friction_can(stopping, measured_on, limit, held):
+    body, problem_of = stopping
+    rubs = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    wide = (('duration', '8 s'), ('amplitude', '40 deg'))
+    problem, still = problem_of(measured_on(body, rubs, settings=wide))
+    use = EffectUse('coulomb_friction', 'pulley_body', {'torque': limit})
+    [[row]] = problem.rollouts.predicted([[use]])
+    [segment] = problem.rollouts.segments
+    off = np.abs(segment.measured[0].value - row)[still]
+    noise = segment.measured[0].noise[still]
+    assert 0.1 < np.mean(still) < 0.5
+    assert (np.mean(off < 1.01 * noise) > 0.95) == held
+
+
+def test_what_is_held_is_no_better_known_than_noise_allows(stopping, measured_on):
+    body, problem_of = stopping
+    # nothing rubs: whoever says that something does may not take the noise away
+    wide = (('duration', '8 s'), ('amplitude', '40 deg'))
+    problem, still = problem_of(measured_on(body, settings=wide))
+    use = EffectUse('presliding_friction', 'pulley_body', {'torque': 0.2, 'angle': 1.0})
+    [[plain]] = problem.rollouts.predicted([[]])
+    [[holding]] = problem.rollouts.predicted([[use]])
+    [segment] = problem.rollouts.segments
+    value = segment.measured[0].value
+    assert still.any()
+    assert np.std((value - holding)[still]) > 0.9 * np.std((value - plain)[still])

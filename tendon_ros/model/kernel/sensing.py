@@ -86,7 +86,12 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
 def record(
     m: Floats, d: Ints, w: Floats, c: Floats, t: float, rows: Floats, every: int, at: int
 ) -> None:
-    """Write one row: time, angles, velocities, efforts, loop forces, contact forces, readings."""
+    """
+    Write one row of what happens at a tick.
+
+    Time, angles, velocities, efforts, forces of loops and contacts, dry friction at the motors and
+    the most that it could be, readings.
+    """
     tick = int(c[TICK])
     if tick % every != 0:
         return
@@ -108,6 +113,11 @@ def record(
     for k in range(K):
         rows[o + k] = w[FORCE + k]
     o += K
+    for j in range(U):
+        i = MOTOR_PULLEY[j]
+        rows[o + j] = w[SIDE + i] * w[BUDGET + i]
+        rows[o + U + j] = w[BUDGET + i]
+    o += 2 * U
     for q in range(Q):
         rows[o + q] = c[READING + q]
 

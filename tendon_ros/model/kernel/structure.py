@@ -38,7 +38,7 @@ BAND: int  # half bandwidth of the network's matrix, pulleys in kernel order
 SPAN: int  # 2 * BAND + 1
 STATES: int  # room for auxiliary states
 DIM: int  # 2 * N + STATES
-WIDTH_ROW: int  # columns of a recorded row: 1 + 2 * N + U + M + K + Q
+WIDTH_ROW: int  # columns of a recorded row: 1 + 2 * N + 3 * U + M + K + Q
 RING: int  # remembered values of each sensor
 
 # --- who touches whom --------------------------------------------------------
