@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
@@ -18,14 +19,18 @@ from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
+from tendon_ros.identify.sticking import sticking
 from tendon_ros.identify.worths import worths
 from tendon_ros.model.instrument import EffectUse
+
+FloatArray = NDArray[np.float64]
 
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.5
-#: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
-COUNTED = 0.22
+#: part of dry friction that may have gone while a pulley sticks: a motor that trembles within a
+#: count lets it creep away
+HELD = 0.4
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -39,22 +44,45 @@ def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     :param state: with them.
     :return: in noise power per sample.
     """
-    own = _own_power(problem, start)
-    if not state.model.causes:
-        return own
+    return _own_power(problem, start) + float(np.mean(form_profile(problem, start, state)))
+
+
+def form_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
+    """
+    Return where and when the laws of the causes may be wrong: where they explain much.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with them.
+    :return: noise power that each sample may keep although the causes are right, shape (samples,).
+    """
+    found = np.zeros(len(state.left))
+    causes = state.model.causes
+    if not causes:
+        return found
     explained = max(0.0, start.cost - state.cost) / len(state.left)
-    forms = [_form(problem, c.effect, c.place) for c in state.model.causes]
     # what each is worth beside the others; what they share is shared out
     worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
-    return own + float(np.minimum(worth, explained) @ np.square(forms))
+    held = sticking(problem, state)
+    for k, cause in enumerate(causes):
+        power = _change(problem, state, k) ** 2
+        form = np.full(len(found), find(cause.effect).form ** 2)
+        if held[k] is not None:
+            form[held[k]] += HELD**2
+        shared = min(float(worth[k]), explained) / max(float(np.mean(power)), 1e-12)
+        found += form * power * shared
+    return found
 
 
-def _form(problem: Problem, effect: str, place: str) -> float:
-    """Return which part of what an effect does at a place its law may get wrong."""
-    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
-    known = find(effect)
-    return COUNTED if known.hook == 'budget' and place in driven else known.form
+def _change(problem: Problem, state: Fit, k: int) -> FloatArray:
+    """Return what a cause does to each sample, to first order where it has sizes."""
+    cause = state.model.causes[k]
+    at = sum(len(c.parameters) for c in state.model.causes[:k])
+    own = [at + n for n in cause.coordinates.sizes]
+    if own:
+        return np.asarray(state.slope[:, own] @ problem.pack(state.model)[own])
+    return problem.left(state.model.without(k)) - state.left
 
 
 #: of each problem, the state that was asked about last, and what the file's effects may leave
@@ -80,7 +108,7 @@ def _left_by_own(problem: Problem, start: Fit) -> float:
         left = problem.flat([m - p for m, p in zip(measured, predicted, strict=True)])
         grown = float(left @ left - start.left @ start.left) / max(len(left), 1)
         if np.isfinite(grown):
-            found += max(0.0, grown) * _form(problem, own.effect, own.place) ** 2
+            found += max(0.0, grown) * find(own.effect).form ** 2
     return found
 
 

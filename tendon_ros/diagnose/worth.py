@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from tendon_ros.diagnose.form import form_power
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.form import form_power, form_profile
 from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
 
 #: part of the noise's power that a cause must explain, over all samples and over one channel
 LEAST, LEAST_IN_ONE = 0.03, 0.12
@@ -16,6 +21,8 @@ TAKES = 0.65
 HOPELESS, MOST_LEFT = 10.0, 0.15
 #: part of what is left in one channel that it must explain else
 HALF = 0.5
+#: part of the samples that tells anything of a cause which shows there alone
+ENOUGH = 0.1
 #: times the form of other laws that an event must explain, for it fits whatever they once get
 #: wrong; or the part of what is left
 TIMES_EVENT, TAKES_EVENT = 10.0, 0.8
@@ -37,13 +44,16 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     least = ATTEMPTS if eager else 1.0
     if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
         return False
+    profile = form_profile(problem, start, before)
     form = form_power(problem, start, before)
     if eager:  # what laws get wrong is not at one time
         return gain > TIMES_EVENT * form or gain > TAKES_EVENT * problem.structured(before.left)
     # what the form of a law leaves has no other cause that would explain most of it
     if gain > form or gain > TAKES * problem.structured(before.left):
         return True
-    return _stands_out(problem, start, before, after, form)
+    if _stands_out(problem, start, before, after, form):
+        return True
+    return _apart(before, after, profile)
 
 
 def _stands_out(problem: Problem, start: Fit, before: Fit, after: Fit, form: float) -> bool:
@@ -59,6 +69,19 @@ def _stands_out(problem: Problem, start: Fit, before: Fit, after: Fit, form: flo
         then[c] - last[c] > max(wrong * (first[c] - then[c]), HALF * (then[c] - 1.0), LEAST_IN_ONE)
         for c in first
     )
+
+
+def _apart(before: Fit, after: Fit, profile: FloatArray) -> bool:
+    """
+    Return whether a cause explains most of what is left where the other laws hardly act.
+
+    A limit that cuts off some torques says nothing of all others.
+    """
+    quiet = profile < LEAST_IN_ONE
+    if np.mean(quiet) < ENOUGH:
+        return False
+    then, last = (float(np.mean(fit.left[quiet] ** 2)) for fit in (before, after))
+    return then - last > max(LEAST_IN_ONE, HALF * (then - 1.0))
 
 
 def by_channel(problem: Problem, fit: Fit) -> dict[str, float]:

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import find_objects, label
 
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.effects import find
@@ -25,6 +26,7 @@ from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 USUAL = 0.6  # part of a motor's torques that no unknown limit cuts off
 TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
@@ -242,10 +244,22 @@ def _as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) 
         if numbers['sensor_rectified'][sensors.index(measured.sensor.name)]:
             continue  # a torque without its sign
         still = segment.still[segment.prescribed.index(pulley)]
-        used, limit = rows.dry_friction[:, j] / gain, rows.dry_limit[:, j] / gain
-        held = np.clip(measured.value - row, used - limit, used + limit)
+        limit = _either_way(rows.dry_limit[:, j], still)
+        used = rows.dry_friction[:, j]
+        held = np.clip(measured.value - row, (used - limit) / gain, (used + limit) / gain)
         held = np.sign(held) * np.maximum(0.0, np.abs(held) - measured.noise)
         row += np.where(still & np.isfinite(held), held, 0.0)
+    return found
+
+
+def _either_way(limit: FloatArray, still: BoolArray) -> FloatArray:
+    """Return the largest friction of each rest: before and after it may differ, by direction."""
+    found = limit.copy()
+    runs, _ = label(still)
+    for found_run in find_objects(runs):
+        assert found_run is not None
+        [run] = found_run
+        found[run] = limit[max(0, run.start - 1) : run.stop + 1].max()
     return found
 
 
