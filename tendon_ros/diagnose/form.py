@@ -28,6 +28,8 @@ FloatArray = NDArray[np.float64]
 #: misfit beyond the best, in noise power per sample, within which two explanations are equal;
 #: and the same as a part of the structure that the best leaves
 TIE, TIE_FORM = 0.015, 0.5
+#: form of dry friction on a driven pulley, whose motion is known to a count: it turns within less
+COUNTED = 0.1
 #: part of dry friction that may have gone while a pulley sticks: a motor that trembles within a
 #: count lets it creep away
 HELD = 0.4
@@ -44,7 +46,7 @@ def form_power(problem: Problem, start: Fit, state: Fit) -> float:
     :param state: with them.
     :return: in noise power per sample.
     """
-    return _own_power(problem, start) + float(np.mean(form_profile(problem, start, state)))
+    return own_power(problem, start) + float(np.mean(form_profile(problem, start, state)))
 
 
 def form_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
@@ -67,7 +69,7 @@ def form_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
     held = sticking(problem, state)
     for k, cause in enumerate(causes):
         power = _change(problem, state, k) ** 2
-        form = np.full(len(found), find(cause.effect).form ** 2)
+        form = np.full(len(found), _form(problem, cause.effect, cause.place) ** 2)
         if held[k] is not None:
             form[held[k]] += HELD**2
         shared = min(float(worth[k]), explained) / max(float(np.mean(power)), 1e-12)
@@ -85,12 +87,25 @@ def _change(problem: Problem, state: Fit, k: int) -> FloatArray:
     return problem.left(state.model.without(k)) - state.left
 
 
+def _form(problem: Problem, effect: str, place: str) -> float:
+    """Return which part of what an effect does at a place its law may get wrong."""
+    known = find(effect)
+    driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
+    return max(known.form, COUNTED) if known.hook == 'budget' and place in driven else known.form
+
+
 #: of each problem, the state that was asked about last, and what the file's effects may leave
 _OWN: WeakKeyDictionary[Problem, tuple[Fit, float]] = WeakKeyDictionary()
 
 
-def _own_power(problem: Problem, start: Fit) -> float:
-    """Return what the laws of the file's own effects may leave, in noise power per sample."""
+def own_power(problem: Problem, start: Fit) -> float:
+    """
+    Return what the laws of the file's own effects may leave.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :return: in noise power per sample.
+    """
     known = _OWN.get(problem)
     if known is None or known[0] is not start:
         known = _OWN[problem] = start, _left_by_own(problem, start)
@@ -108,7 +123,7 @@ def _left_by_own(problem: Problem, start: Fit) -> float:
         left = problem.flat([m - p for m, p in zip(measured, predicted, strict=True)])
         grown = float(left @ left - start.left @ start.left) / max(len(left), 1)
         if np.isfinite(grown):
-            found += max(0.0, grown) * find(own.effect).form ** 2
+            found += max(0.0, grown) * _form(problem, own.effect, own.place) ** 2
     return found
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_power, form_profile
+from tendon_ros.diagnose.form import form_power, form_profile, own_power
+from tendon_ros.effects import find
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 #: part of the noise's power that a cause must explain, over all samples and over one channel
 LEAST, LEAST_IN_ONE = 0.03, 0.12
@@ -45,7 +49,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
         return False
     profile = form_profile(problem, start, before)
-    form = form_power(problem, start, before)
+    form = own_power(problem, start) + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time
         return gain > TIMES_EVENT * form or gain > TAKES_EVENT * problem.structured(before.left)
     # what the form of a law leaves has no other cause that would explain most of it
@@ -135,11 +139,41 @@ def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
     :param problem: the data.
     :param before: the poorer fit.
     :param after: the better one.
-    :return: over all samples, and in the channel where it falls most.
+    :return: over all samples, and in the channel where it falls most; what dry friction merely
+        holds while a motor rests does not count: it could hold anything.
     """
+    held = _held(problem, before, after)
+    if held.any():
+        counted = replace(after, left=np.where(held, before.left, after.left))
+        excused = float(
+            before.left[held] @ before.left[held] - after.left[held] @ after.left[held]
+        )
+        after = replace(counted, cost=after.cost + max(0.0, excused))
     then, last = by_channel(problem, before), by_channel(problem, after)
     gain = (before.cost - after.cost) / max(len(before.left), 1)
     return gain, max((then[c] - last[c] for c in then), default=0.0)
+
+
+def _held(problem: Problem, before: Fit, after: Fit) -> BoolArray:
+    """Return which samples are torques of resting motors on whose pulleys new friction acts."""
+    rubs = {
+        c.place
+        for c in set(after.model.causes) - set(before.model.causes)
+        if find(c.effect).hook == 'budget'
+    }
+    instrument = problem.rollouts.instrument
+    pulley = {m.name: m.pulley for m in instrument.motors}
+    rows = []
+    for segment in problem.rollouts.segments:
+        row = np.zeros((len(segment.measured), len(segment.time)), dtype=np.bool_)
+        for n, measured in enumerate(segment.measured):
+            of = pulley.get(measured.sensor.of)
+            if measured.sensor.kind != 'motor_torque' or of not in segment.prescribed:
+                continue
+            if f'pulley_{of}' in rubs:
+                row[n] = segment.still[segment.prescribed.index(of)]
+        rows.append(row)
+    return problem.sampled(rows)
 
 
 def needed(problem: Problem, start: Fit, state: Fit) -> float:

@@ -138,11 +138,11 @@ class Residuals:
         ]
         return np.concatenate(parts)
 
-    def sampled(self, rows: Sequence[FloatArray]) -> FloatArray:
+    def sampled[T: np.generic](self, rows: Sequence[NDArray[T]]) -> NDArray[T]:
         """
         Return something known of every bin, for each sample that counts.
 
-        :param rows: one array (bins,) a segment.
+        :param rows: one array (bins,) or (channels, bins) a segment.
         :return: shape (samples,).
         """
         parts = [
