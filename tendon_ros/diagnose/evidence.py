@@ -75,6 +75,25 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class Told:
+    """
+    What one recording alone says of the size of a cause.
+
+    ``why``: why it says nothing, where it does not: the cause leaves ``no trace`` there, or
+    ``others do the same``.
+    """
+
+    recording: str
+    effect: str
+    place: str
+    parameter: str
+    unit: str
+    value: float
+    ci95: tuple[float, float]
+    why: str
+
+
+@dataclass(frozen=True)
 class Evidence:
     """Everything the report shows beside the verdict."""
 
@@ -85,5 +104,6 @@ class Evidence:
     steps: tuple[Step, ...]
     floors: tuple[Floor, ...]
     moved: tuple[Moved, ...]
+    told: tuple[Told, ...]
     rivals: tuple[Rival, ...]
     seconds: float

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from tendon_ros.diagnose.evidence import Evidence, Moved, Trace
+from tendon_ros.diagnose.evidence import Evidence, Moved, Told, Trace
 from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Judged
 from tendon_ros.effects import find
 from tendon_ros.report.blocks import Block, Columns, Details, Listing
@@ -48,6 +48,8 @@ def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section
         sections.append(_closed_loop(diagnosis, evidence, floors))
     if evidence.rivals or diagnosis.candidates:
         sections.append(_considered(diagnosis, evidence))
+    if evidence.told:
+        sections.append(_by_recording(evidence))
     if evidence.floors or evidence.moved:
         sections.append(_basis(evidence))
     sections.append(_run(diagnosis, evidence))
@@ -171,6 +173,32 @@ def _by_probability(visible: Iterable[Judged]) -> tuple[tuple[str, str, str], ..
     )
 
 
+def _by_recording(evidence: Evidence) -> Section:
+    """Return what each recording alone says of each cause: where it shows, and where it cannot."""
+    sizes = list(dict.fromkeys((t.effect, t.place, t.parameter) for t in evidence.told))
+    said = {(t.recording, t.effect, t.place, t.parameter): _told(t) for t in evidence.told}
+    rows = tuple(
+        (recording, *(said.get((recording, *size), 'not there') for size in sizes))
+        for recording in dict.fromkeys(t.recording for t in evidence.told)
+    )
+    header = tuple(f'{find(e).title} of {place_words(p)}: {name}' for e, p, name in sizes)
+    text = (
+        'Each recording on its own, one step from the fit to all of them. Sizes that differ by '
+        'more than their intervals say that a law is not quite the machine’s. Where nothing can '
+        'be told: the cause leaves no trace there, or tolerances and other causes do the same.'
+    )
+    table = Table(('recording', *header), rows, wraps=True)
+    return Section('What each recording tells', (Prose(text), table), 'recordings')
+
+
+def _told(told: Told) -> str:
+    """Return a size with its interval, or why there is none."""
+    if told.why:
+        return told.why
+    value, interval = with_interval(told.value, told.ci95, told.unit)
+    return f'{value} ({interval})'
+
+
 def _basis(evidence: Evidence) -> Section:
     blocks: list[Block] = []
     if evidence.floors:
@@ -189,6 +217,9 @@ def _basis(evidence: Evidence) -> Section:
 
 def _moved(moved: Moved) -> tuple[str, str, str, str]:
     value, interval = with_interval(moved.value, moved.ci95, moved.unit)
+    effect, _, parameter = moved.quantity.partition('.')
+    if parameter:  # of an effect that the file has: the number itself
+        return f'{parameter} of {find(effect).title}', place_words(moved.place), value, interval
     sign = '' if value.startswith('−') else '+'
     by = f'× {value}' if moved.unit in ('', '1') else f'{sign}{value}'
     return moved.quantity, place_words(moved.place), by, interval

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Rival, Step, Trace
+from tendon_ros.diagnose.evidence import Evidence, Floor, Moved, Rival, Step, Told, Trace
 from tendon_ros.diagnose.result import (
     Candidate,
     Cause,
@@ -234,6 +234,29 @@ def evidence(**changes: object) -> Evidence:
             Moved('pulley_3', 'inertia', 1.021, (0.987, 1.055), '1'),
             Moved('cable_12', 'pretension', 0.994, (0.981, 1.007), '1'),
             Moved('encoder_M', 'angle', -0.00021, (-0.00034, -0.00008), 'rad'),
+        ),
+        'told': (
+            Told(
+                'contact',
+                'tension_friction',
+                'pulley_3',
+                'coefficient',
+                '1',
+                0.096,
+                (0.083, 0.109),
+                '',
+            ),
+            Told(
+                'free',
+                'tension_friction',
+                'pulley_3',
+                'coefficient',
+                '1',
+                0.02,
+                (-0.1, 0.14),
+                'others do the same',
+            ),
+            Told('contact', 'pretension', 'cable_L3', 'scale', '1', 0.9, (0.8, 1.0), 'no trace'),
         ),
         'rivals': (
             Rival('tension_friction', 'pulley_3', 0.83),
