@@ -41,14 +41,18 @@ class Signs:
     form: float
 
     @property
+    def most(self) -> float:
+        """What it is worth, over all samples or in the channel where it shows."""
+        return max(self.worth, self.in_one / 4.0, 1e-6)
+
+    @property
     def features(self) -> FloatArray:
         """Inputs of the logistic regression."""
-        worth = max(self.worth, self.in_one / 4.0, 1e-6)
         left = self.left / (LEFT_NOISE + self.form)
         return np.array(
             [
                 1.0,
-                math.log10(worth),
+                math.log10(self.most),
                 math.log10(min(max(left, LITTLE), MUCH)),
             ]
         )
@@ -112,7 +116,7 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     return Signs(max(worth, 1e-9), in_one, left, explained, form)
 
 
-#: probability that a cause has at most which foretells nothing
+#: probability that a cause has at most which foretells nothing, or drowns in what others leave
 IDLE = 0.3
 
 
@@ -154,7 +158,9 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     :return: 0 to 1.
     """
     likely = probability(signs)
-    return likely if foretells(ready, found, k) else min(IDLE, likely)
+    # what explains less than stays, and less than the others' laws may leave, may be either
+    drowned = signs.most < min(signs.left, signs.form)
+    return likely if foretells(ready, found, k) and not drowned else min(IDLE, likely)
 
 
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
