@@ -33,6 +33,8 @@ COUNTED = 0.1
 #: part of dry friction that may have gone while a pulley sticks: a motor that trembles within a
 #: count lets it creep away
 HELD = 0.4
+#: waves of a ripple that a motor has to pass
+SEEN = 0.5
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -148,7 +150,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param candidate: the effect.
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
-        a ripple without a period, a number of the file within its tolerance.
+        a ripple of which not half a wave was seen, a number of the file within its tolerance.
     """
     for t in problem.tolerances:
         if t.is_moved_by(candidate):
@@ -164,9 +166,22 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
                 return True
         if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
-        if p.search == 'cycles' and values[p.name] < 1.0:
+        if p.search == 'cycles' and values[p.name] * _turned(problem, candidate.place) < SEEN:
             return True
     return simpler(candidate, values) is not None
+
+
+def _turned(problem: Problem, place: str) -> float:
+    """Return how far a motor turned in any recording, in turns; one where nothing tells."""
+    motors = problem.rollouts.instrument.motors
+    pulleys = [m.pulley for m in motors if f'motor_{m.name}' == place]
+    travels = [
+        float(np.ptp(segment.motion.value[segment.prescribed.index(pulley)]))
+        for segment in problem.rollouts.segments
+        for pulley in pulleys
+        if pulley in segment.prescribed
+    ]
+    return max(travels) / (2.0 * np.pi) if travels else 1.0
 
 
 def simpler(

@@ -14,6 +14,7 @@ from tendon_ros.report.diagnosis_verdict import in_floors
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
+    effect_words,
     number,
     percent,
     place_words,
@@ -181,7 +182,7 @@ def _by_recording(evidence: Evidence) -> Section:
         (recording, *(said.get((recording, *size), 'not there') for size in sizes))
         for recording in dict.fromkeys(t.recording for t in evidence.told)
     )
-    header = tuple(f'{find(e).title} of {place_words(p)}: {name}' for e, p, name in sizes)
+    header = tuple(f'{effect_words(e, p)}: {name}' for e, p, name in sizes)
     text = (
         'Each recording on its own, one step from the fit to all of them. Sizes that differ by '
         'more than their intervals say that a law is not quite the machine’s. Where nothing can '
