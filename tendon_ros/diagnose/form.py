@@ -33,6 +33,8 @@ COUNTED = 0.1
 #: part of dry friction that may have gone while a pulley sticks: a motor that trembles within a
 #: count lets it creep away
 HELD = 0.4
+#: periods of the controllers within which a delay is theirs
+HOLDS = 0.75
 #: waves of a ripple that a motor has to pass
 SEEN = 0.5
 #: events nearer to each other than this are one [s]
@@ -150,12 +152,17 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param candidate: the effect.
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
-        a ripple of which not half a wave was seen, a number of the file within its tolerance.
+        a delay that a controller's hold makes, a ripple of which not half a wave was seen, a
+        number of the file within its tolerance.
     """
     for t in problem.tolerances:
         if t.is_moved_by(candidate):
             value = values[t.parameter]
             return t.axis.low < value < t.axis.high
+    # a controller holds its torque for a period, on average half of one too long
+    held = HOLDS * problem.rollouts.instrument.control_period
+    if candidate.effect == 'sensor_delay' and values['time'] < held:
+        return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them
     between = between_recordings(problem, candidate)

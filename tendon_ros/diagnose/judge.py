@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.form import form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.worth import gains
+from tendon_ros.diagnose.worth import gains, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -160,6 +160,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     likely = probability(signs)
     # what explains less than stays, and less than the others' laws may leave, may be either
     drowned = signs.most < min(signs.left, signs.form)
+    if found.final.model.causes[k].instants:  # of all times, one fits what a law gets wrong
+        drowned = signs.most < TIMES_EVENT * signs.form
     return likely if foretells(ready, found, k) and not drowned else min(IDLE, likely)
 
 

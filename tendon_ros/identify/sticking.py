@@ -15,7 +15,7 @@ from tendon_ros.identify.fit import Fit, Problem
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-STICKS = 0.25  # [s] of a motion
+STICKS = 1.0  # [s] of rest: what only turns does not creep
 BENDS = 2.0  # angles over which friction builds up that a pulley turns while it sticks
 
 
