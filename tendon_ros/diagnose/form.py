@@ -32,7 +32,7 @@ TIE, TIE_FORM = 0.015, 0.5
 COUNTED = 0.1
 #: part of dry friction that may have gone while a pulley sticks: a motor that trembles within a
 #: count lets it creep away
-HELD = 0.4
+HELD = 0.3
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
 #: waves of a ripple that a motor has to pass

@@ -116,6 +116,8 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     return Signs(max(worth, 1e-9), in_one, left, explained, form)
 
 
+#: part of what stays below which a cause drowns in it
+DROWNED = 0.3
 #: probability that a cause has at most which foretells nothing, or drowns in what others leave
 IDLE = 0.3
 
@@ -158,8 +160,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     :return: 0 to 1.
     """
     likely = probability(signs)
-    # what explains less than stays, and less than the others' laws may leave, may be either
-    drowned = signs.most < min(signs.left, signs.form)
+    # what explains little of what stays, and less than laws may leave, may be anything
+    drowned = signs.most < min(DROWNED * signs.left, signs.form)
     if found.final.model.causes[k].instants:  # of all times, one fits what a law gets wrong
         drowned = signs.most < TIMES_EVENT * signs.form
     return likely if foretells(ready, found, k) and not drowned else min(IDLE, likely)
