@@ -1,0 +1,109 @@
+"""What counts in a cause's favour: not what friction merely holds; all where others do not act."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose import worth
+from tendon_ros.diagnose.form import form_power, form_profile
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.worth import gains, worthwhile
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.sticking import sticking
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
+
+RUBS = Candidate('coulomb_friction', 'pulley_body')
+BIAS = Candidate('torque_bias', 'motor_body')
+WIDE = (('duration', '6 s'), ('amplitude', '40 deg'))
+
+
+@pytest.fixture(scope='module')
+def body():
+    """Return one body on a motor."""
+    return load_instrument('single_body')
+
+
+@pytest.fixture(scope='module')
+def rubbing(body, measured_on):
+    """Return the problem of a body that rubs."""
+    run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}), settings=WIDE)
+    return prepared([run], body).problem
+
+
+def test_friction_that_holds_is_no_evidence(rubbing):
+    before = rubbing.fitted(rubbing.empty)
+    after = rubbing.fitted(rubbing.empty.joined(RUBS, {'torque': 0.1}))
+    [segment] = rubbing.rollouts.segments
+    still = rubbing.sampled([segment.still[0]])
+    gain, _ = gains(rubbing, before, after)
+    moving = np.sum(before.left[~still] ** 2) - np.sum(after.left[~still] ** 2)
+    assert 0.1 < np.mean(still) < 0.5
+    assert gain == pytest.approx(moving / len(still), rel=0.05)
+    # of another cause all counts
+    pushed = rubbing.fitted(rubbing.empty.joined(BIAS, {'torque': 0.01}))
+    whole = (before.cost - pushed.cost) / len(still)
+    assert gains(rubbing, before, pushed)[0] == pytest.approx(whole)
+
+
+CUT = Candidate('torque_saturation', 'motor_body')
+
+
+@pytest.fixture(scope='module')
+def limited(body, measured_on):
+    """Return the problem of a body whose motor is cut off, without and with that limit."""
+    run = measured_on(body, (CUT.effect, CUT.place, {'limit': 0.06}), settings=WIDE)
+    problem = prepared([run], body).problem
+    start = problem.fitted(problem.empty)
+    return problem, start, problem.fitted(problem.empty.joined(CUT, {'limit': 0.06}))
+
+
+def test_laws_may_be_wrong_where_they_act_and_not_elsewhere(limited):
+    problem, start, state = limited
+    profile = form_profile(problem, start, state)
+    assert profile.shape == state.left.shape
+    assert form_power(problem, start, state) == pytest.approx(float(np.mean(profile)))
+    assert np.quantile(profile, 0.3) < 0.01 * profile.max()
+
+
+@pytest.mark.parametrize('silent', [True, False])
+def test_a_weak_cause_counts_where_the_strong_one_is_silent(limited, monkeypatch, silent):
+    problem, start, state = limited
+    quiet = np.arange(len(state.left)) % 100 < 60
+    profile = np.where(quiet, 0.0, 1e4)  # so strong that its form hides everything, on average
+    monkeypatch.setattr(worth, 'form_profile', lambda *_: profile)
+    left = np.where(quiet, 0.0, 5.0)
+    off = left + np.where(quiet == silent, 2.0, 0.0)
+    before = replace(state, left=off, cost=float(off @ off))
+    model = state.model.joined(BIAS, {'torque': 0.01})
+    after = replace(state, left=left, cost=float(left @ left), model=model)
+    assert worthwhile(problem, start, before, after) is silent
+
+
+def test_the_effects_of_a_file_have_a_form_too(body, rubbing, measured_on):
+    friction = EffectUse('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}), settings=WIDE)
+    problem = prepared([run], replace(body, effects=(friction,))).problem
+    fit = problem.fitted(problem.empty)
+    assert form_power(problem, fit, fit) > 1.0
+    plain = rubbing.fitted(rubbing.empty)
+    assert form_power(rubbing, plain, plain) == 0.0
+
+
+def test_inner_friction_sticks_where_the_rig_rests(measured_on):
+    bench = load_instrument('bench_rig')
+    rubs = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
+    resting = measured_on(bench, rubs, touching=True, trajectory='paper_fig12', settings=())
+    moving = replace(measured_on(bench, rubs), name='moving')
+    problem = prepared([resting, moving], bench).problem
+    inner = Candidate('coulomb_friction', 'pulley_3')
+    driven = Candidate('coulomb_friction', 'pulley_M')
+    model = problem.empty.joined(inner, {'torque': 0.1}).joined(driven, {'torque': 0.01})
+    sticks, free = sticking(problem, problem.fitted(model, rounds=1))
+    assert free is None
+    segment = np.concatenate(
+        [np.full(span.stop - span.start, n) for n, _, span in problem.spans()]
+    )
+    assert np.mean(sticks[segment == 0]) > 0.3
+    assert np.mean(sticks[segment == 1]) < 0.1
