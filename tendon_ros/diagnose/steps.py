@@ -70,6 +70,7 @@ class Steps:
     ) -> None:
         self.problem = problem
         self.candidates = tuple(candidates)
+        self._named = {(c.effect, c.place) for c in candidates}
         self.report = report
         self.pool = ThreadPoolExecutor(jobs)
 
@@ -195,7 +196,10 @@ class Steps:
                 continue
             other = simpler(cause, values)
             model = model.without(k)
-            if other is not None and (other[0].effect, other[0].place) not in taken:
+            if other is None:
+                continue
+            name = (other[0].effect, other[0].place)
+            if name in self._named and name not in taken:
                 model = model.joined(*other)
         return state if model is state.model else self.settled(model)
 
