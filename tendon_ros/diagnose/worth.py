@@ -42,6 +42,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     :param after: with it.
     :return: whether it explains more than noise and the form of the other laws can.
     """
+    after = moving(problem, before, after)
     gain, in_one = gains(problem, before, after)
     new = set(after.model.causes) - set(before.model.causes)
     eager = all(c.instants for c in new)
@@ -139,19 +140,30 @@ def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
     :param problem: the data.
     :param before: the poorer fit.
     :param after: the better one.
-    :return: over all samples, and in the channel where it falls most; what dry friction merely
-        holds while a motor rests does not count: it could hold anything.
+    :return: over all samples, and in the channel where it falls most.
     """
-    held = _held(problem, before, after)
-    if held.any():
-        counted = replace(after, left=np.where(held, before.left, after.left))
-        excused = float(
-            before.left[held] @ before.left[held] - after.left[held] @ after.left[held]
-        )
-        after = replace(counted, cost=after.cost + max(0.0, excused))
     then, last = by_channel(problem, before), by_channel(problem, after)
     gain = (before.cost - after.cost) / max(len(before.left), 1)
     return gain, max((then[c] - last[c] for c in then), default=0.0)
+
+
+def moving(problem: Problem, before: Fit, after: Fit) -> Fit:
+    """
+    Return the better of two fits without what new friction merely holds while a motor rests.
+
+    It could hold anything, so that holding is no reason to look for it.
+
+    :param problem: the data.
+    :param before: the poorer fit.
+    :param after: the better one.
+    :return: what it leaves, there as much as the poorer one does.
+    """
+    held = _held(problem, before, after)
+    if not held.any():
+        return after
+    excused = float(np.sum(before.left[held] ** 2 - after.left[held] ** 2))
+    left = np.where(held, before.left, after.left)
+    return replace(after, left=left, cost=after.cost + max(0.0, excused))
 
 
 def _held(problem: Problem, before: Fit, after: Fit) -> BoolArray:
