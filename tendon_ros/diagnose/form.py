@@ -41,25 +41,29 @@ SEEN = 0.5
 AT_ONCE = 0.5
 
 
-def form_power(problem: Problem, start: Fit, state: Fit) -> float:
+def form_power(problem: Problem, start: Fit, state: Fit, *, resting: bool = True) -> float:
     """
     Return what the laws of causes, and of the file's effects, may leave although they are right.
 
     :param problem: the data.
     :param start: without any cause.
     :param state: with them.
+    :param resting: whether friction that holds may have crept away: it is no reason to doubt the
+        friction, but what it leaves is left.
     :return: in noise power per sample.
     """
-    return own_power(problem, start) + float(np.mean(form_profile(problem, start, state)))
+    profile = form_profile(problem, start, state, resting=resting)
+    return own_power(problem, start) + float(np.mean(profile))
 
 
-def form_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
+def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = True) -> FloatArray:
     """
     Return where and when the laws of the causes may be wrong: where they explain much.
 
     :param problem: the data.
     :param start: without any cause.
     :param state: with them.
+    :param resting: as for :func:`form_power`.
     :return: noise power that each sample may keep although the causes are right, shape (samples,).
     """
     found = np.zeros(len(state.left))
@@ -70,7 +74,7 @@ def form_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
     # what each is worth beside the others; what they share is shared out
     worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
-    held = sticking(problem, state)
+    held = sticking(problem, state) if resting else [None] * len(causes)
     for k, cause in enumerate(causes):
         power = _change(problem, state, k) ** 2
         form = np.full(len(found), _form(problem, cause.effect, cause.place) ** 2)

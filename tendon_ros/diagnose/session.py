@@ -91,7 +91,7 @@ def diagnose(
     if len(model.causes) < len(believed.model.causes):
         believed = problem.fitted(model, rounds=6)
     left = problem.structured(believed.left)
-    beyond = left_over(left, form_power(problem, found.start, believed))
+    beyond = left_over(left, form_power(problem, found.start, believed, resting=False))
     places = whereabouts(ready, found, held.accepted, believed, left)
     # where there is no gap, there is nothing that anything could stand in for
     kept = held.kept if held.named or beyond >= NAMED else ()
