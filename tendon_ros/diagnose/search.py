@@ -12,8 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.form import at_once, tie
+from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import at_once, degenerate, least_late, simpler
+from tendon_ros.diagnose.bent import at_once, degenerate, least_late, simpler
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.identify.candidate import Candidate
@@ -70,7 +70,7 @@ class Steps:
     ) -> None:
         self.problem = problem
         self.candidates = tuple(candidates)
-        self._named = {(c.effect, c.place) for c in candidates}
+        self._allowed = {(c.effect, c.place) for c in candidates}
         self.report = report
         self.pool = ThreadPoolExecutor(jobs)
 
@@ -199,7 +199,7 @@ class Steps:
             if other is None:
                 continue
             name = (other[0].effect, other[0].place)
-            if name in self._named and name not in taken:
+            if name in self._allowed and name not in taken:
                 model = model.joined(*other)
         return state if model is state.model else self.settled(model)
 

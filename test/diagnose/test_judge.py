@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from tendon_ros.diagnose.form import degenerate
+from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import foretells
 from tendon_ros.diagnose.prepare import prepared

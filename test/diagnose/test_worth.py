@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose import worth
-from tendon_ros.diagnose.form import form_power, form_profile
+from tendon_ros.diagnose.form import form_power, form_profile, tie
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.worth import gains, moving, worthwhile
 from tendon_ros.identify.candidate import Candidate
@@ -87,7 +87,12 @@ def test_the_effects_of_a_file_have_a_form_too(body, rubbing, measured_on):
     fit = problem.fitted(problem.empty)
     assert form_power(problem, fit, fit) > 1.0
     plain = rubbing.fitted(rubbing.empty)
-    assert form_power(rubbing, plain, plain) == 0.0
+    assert form_power(rubbing, plain, plain) == 0.0  # no cause, no law to blame
+
+
+def test_what_a_sound_rig_leaves_ties_little(body, measured_on):
+    problem = prepared([measured_on(body, settings=WIDE)], body).problem
+    assert tie(problem, problem.fitted(problem.empty, rounds=2)) < 0.05
 
 
 def test_inner_friction_sticks_where_the_rig_rests(measured_on):

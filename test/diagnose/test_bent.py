@@ -1,15 +1,8 @@
-"""The form of laws: what a fit has bent an effect into goes by its own name."""
+"""What a fit has bent an effect into goes by its own name; what is one event is one."""
 
 import pytest
 
-from tendon_ros.diagnose.form import (
-    at_once,
-    degenerate,
-    form_power,
-    least_late,
-    simpler,
-    tie,
-)
+from tendon_ros.diagnose.bent import at_once, degenerate, least_late, simpler
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -69,12 +62,6 @@ def test_creep_that_is_over_at_once_is_a_softer_cable():
     assert other == (Candidate('cable_stiffness', 'cable_12'), {'scale': 0.8})
     slow = {'fraction': 0.2, 'time': 3.0}
     assert simpler(Candidate('cable_creep', 'cable_12'), slow) is None
-
-
-def test_without_a_cause_no_law_is_to_blame(sound_problem):
-    fit = sound_problem.fitted(sound_problem.empty, rounds=2)
-    assert form_power(sound_problem, fit, fit) == 0.0
-    assert tie(sound_problem, fit) < 0.05
 
 
 PUSH = {'torque': 0.1, 'start': 3.0, 'duration': 0.5}

@@ -1,0 +1,136 @@
+"""
+Effects that fits have bent into others, and causes that are one.
+
+A fit knows no names: it turns a creep that is over at once into a softer cable, a ripple without a
+wave into gravity, one push into a push and a slip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tendon_ros.effects import find
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import drives
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
+
+#: periods of the controllers within which a delay is theirs
+HOLDS = 0.75
+#: waves of a ripple that a motor has to pass
+SEEN = 0.5
+#: events nearer to each other than this are one [s]
+AT_ONCE = 0.5
+
+
+def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a fit has bent an effect into something else.
+
+    :param problem: the data.
+    :param candidate: the effect.
+    :param values: of its parameters.
+    :return: whether: into another effect that has a name of its own, an event that always lasts,
+        a delay that a controller's hold makes, a ripple of which not half a wave was seen, a
+        number of the file within its tolerance.
+    """
+    for t in problem.tolerances:
+        if t.is_moved_by(candidate):
+            value = values[t.parameter]
+            return t.axis.low < value < t.axis.high
+    # a controller holds its torque for a period, on average half of one too long
+    held = HOLDS * problem.rollouts.instrument.control_period
+    if candidate.effect == 'sensor_delay' and values['time'] < held:
+        return True
+    longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
+    # what has been there from the first in one of several recordings happened between them
+    between = between_recordings(problem, candidate)
+    for p in candidate.parameters:
+        if p.search == 'instant':
+            at = values[p.name] / longest
+            if at > 1.0 - BEGUN or (at < BEGUN and not between):
+                return True
+        if p.search == 'duration' and values[p.name] > LASTS * longest:
+            return True
+        if p.search == 'cycles' and values[p.name] * _turned(problem, candidate.place) < SEEN:
+            return True
+    return simpler(candidate, values) is not None
+
+
+def _turned(problem: Problem, place: str) -> float:
+    """Return how far a motor turned in any recording, in turns; one where nothing tells."""
+    motors = problem.rollouts.instrument.motors
+    pulleys = [m.pulley for m in motors if f'motor_{m.name}' == place]
+    travels = [
+        float(np.ptp(segment.motion.value[segment.prescribed.index(pulley)]))
+        for segment in problem.rollouts.segments
+        for pulley in pulleys
+        if pulley in segment.prescribed
+    ]
+    return max(travels) / (2.0 * np.pi) if travels else 1.0
+
+
+def simpler(
+    candidate: Candidate, values: Mapping[str, float]
+) -> tuple[Candidate, dict[str, float]] | None:
+    """
+    Return the simpler effect that parameters make of an effect.
+
+    :param candidate: the effect.
+    :param values: of its parameters.
+    :return: the other effect at the same place, with its parameters; None where there is none.
+    """
+    other = find(candidate.effect).other
+    found = None if other is None else other(**values)
+    if found is None:
+        return None
+    name, parameters = found
+    return Candidate(name, candidate.place), parameters
+
+
+def least_late(problem: Problem, model: Model) -> int | None:
+    """
+    Return the smallest delay where every sensor has one: what all share is the clock's.
+
+    :param problem: the data.
+    :param model: causes.
+    :return: which cause; None where some sensor is on time.
+    """
+    rollouts = problem.rollouts
+    sensors = {m.sensor.name for s in rollouts.segments for m in s.measured}
+    sensors |= {d.sensor.name for d in drives(rollouts.instrument)}
+    late = {k: c.place for k, c in enumerate(model.causes) if c.effect == 'sensor_delay'}
+    if not sensors <= set(late.values()):
+        return None
+    return min(late, key=lambda k: model.values(k)['time'])
+
+
+def at_once(
+    one: tuple[Candidate, Mapping[str, float]], other: tuple[Candidate, Mapping[str, float]]
+) -> bool:
+    """
+    Return whether two events are at the same time: no push is quite the one of its law.
+
+    :param one: an effect with its parameters.
+    :param other: another one.
+    :return: whether both are events that may be one, in the same recording.
+    """
+    first, second = _span(*one), _span(*other)
+    if first is None or second is None:
+        return False
+    if one[0].only != other[0].only and one[0].only and other[0].only:
+        return False
+    return first[0] - AT_ONCE < second[1] and second[0] - AT_ONCE < first[1]
+
+
+def _span(candidate: Candidate, values: Mapping[str, float]) -> tuple[float, float] | None:
+    """Return begin and end of an event [s]; None of what lasts."""
+    begun = [values[p.name] for p in candidate.instants]
+    if not begun:
+        return None
+    return begun[0], begun[0] + sum(
+        values[p.name] for p in candidate.parameters if p.search == 'duration'
+    )
