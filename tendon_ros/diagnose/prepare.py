@@ -73,7 +73,7 @@ class Prepared:
             )
             for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts, segments, self.noise, self.shift)
+        return _problems(rollouts.instrument, segments, self.noise, self.shift)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -98,30 +98,32 @@ class Prepared:
         :return: the problems.
         """
         rollouts = self.whole.rollouts
-        return _problems(rollouts, rollouts.segments, self.noise, shift)
+        return _problems(rollouts.instrument, rollouts.segments, self.noise, shift)
 
 
-def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
+def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepared:
     """
     Make recordings ready to be diagnosed.
 
     :param recordings: admitted ones.
     :param instrument: the network.
-    :param jobs: threads in which recordings are rolled out at the same time.
     :return: the problem.
     """
     period = bin_length(recordings, instrument)
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    rollouts = Rollouts(instrument, segments, jobs)
-    predicted = rollouts.predicted([[] for _ in segments])
+    predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
     noise = noise_of_counts(instrument, segments, recordings, predicted)
-    return _problems(rollouts, noise.given(segments, predicted), noise, 0)
+    return _problems(instrument, noise.given(segments, predicted), noise, 0)
 
 
-def _problems(before: Rollouts, segments: Sequence[Segment], noise: Noise, shift: int) -> Prepared:
-    instrument = before.instrument
-    rollouts = Rollouts(instrument, segments, before.jobs)
+def _problems(
+    instrument: Instrument,
+    segments: Sequence[Segment],
+    noise: Noise,
+    shift: int,
+) -> Prepared:
+    rollouts = Rollouts(instrument, segments)
     usable = [s.time > SETTLING for s in segments]
     held = held_out(segments, shift)
     moving = tolerances(instrument)

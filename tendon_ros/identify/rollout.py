@@ -63,7 +63,6 @@ class Rollouts:
             ]
             for segment in self.segments
         )
-        self.jobs = jobs
         self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
 
     @cached_property
