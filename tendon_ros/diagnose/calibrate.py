@@ -24,7 +24,7 @@ from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import as_recorded, said_of_torque
-from tendon_ros.identify.explanation import BRISTLE, Model
+from tendon_ros.identify.explanation import BRISTLE, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.instrument import EffectUse, Instrument
 
@@ -96,12 +96,12 @@ def calibrate(
     """
     fitted = tuple(use for use in instrument.effects if _is_fitted(use))
     rest = tuple(use for use in instrument.effects if use not in fitted)
-    plain = replace(instrument, effects=tuple(use for use in rest if not _is_bristle(use)))
+    plain = replace(instrument, effects=tuple(use for use in rest if not is_bristle(use)))
     plain = as_recorded(plain, {name for r in recordings for name in r.channels})
     report('looking at the recordings', 0.0)
     intake = admitted(recordings, plain)
     ready = prepared(intake.recordings, plain)
-    start = _start(ready.problem, fitted, [use for use in rest if _is_bristle(use)])
+    start = _start(ready.problem, fitted, [use for use in rest if is_bristle(use)])
     if not start.causes and not ready.problem.tolerances:
         raise RecordingError(
             f'{instrument.name}: nothing to calibrate: the file has no effects and leaves no '
@@ -138,15 +138,10 @@ def calibrate(
     )
 
 
-def _is_bristle(use: EffectUse) -> bool:
-    """Return whether an effect is only the angle over which another's friction builds up."""
-    return use.effect == 'presliding_friction' and use.parameters.get('torque') == 0.0
-
-
 def _is_fitted(use: EffectUse) -> bool:
     """Return whether an effect has a size that may differ from machine to machine."""
     one = Candidate(use.effect, use.place)
-    return one.scales and not one.instants and not _is_bristle(use)
+    return one.scales and not one.instants and not is_bristle(use)
 
 
 def _start(problem: Problem, effects: Sequence[EffectUse], bristles: Sequence[EffectUse]) -> Model:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import time
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose import gather
+from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.evidence import Evidence
@@ -29,7 +29,6 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.diagnose.telling import told as told_by_each
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.model.instrument import Instrument
@@ -136,7 +135,7 @@ def diagnose(
         steps=gather.steps(heard, found),
         floors=gather.floors(heard.problem),
         moved=gather.moved(heard.problem, final),
-        told=told_by_each(heard.problem, final),
+        told=telling.told(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,
     )

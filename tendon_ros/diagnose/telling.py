@@ -34,10 +34,7 @@ def told(problem: Problem, fit: Fit) -> tuple[Told, ...]:
         )
         if not own.any():
             continue
-        used = [
-            np.full(len(s.time), s is segment, dtype=np.bool_) for s in problem.rollouts.segments
-        ]
-        mask = [u & m.any(axis=0) for u, m in zip(used, problem.masks, strict=True)]
+        mask = [m.any(axis=0) & (k == n) for k, m in enumerate(problem.masks)]
         alone = Problem(problem.rollouts, problem.tolerances, mask)
         part = _alone(alone, replace(fit, left=fit.left[own], slope=fit.slope[own]))
         intervals = parameter_intervals(alone, part)

@@ -174,16 +174,12 @@ def _held(problem: Problem, before: Fit, after: Fit) -> BoolArray:
         if find(c.effect).hook == 'budget'
     }
     instrument = problem.rollouts.instrument
-    pulley = {m.name: m.pulley for m in instrument.motors}
     rows = []
     for segment in problem.rollouts.segments:
         row = np.zeros((len(segment.measured), len(segment.time)), dtype=np.bool_)
-        for n, measured in enumerate(segment.measured):
-            of = pulley.get(measured.sensor.of)
-            if measured.sensor.kind != 'motor_torque' or of not in segment.prescribed:
-                continue
-            if f'pulley_{of}' in rubs:
-                row[n] = segment.still[segment.prescribed.index(of)]
+        for n, j, still in segment.at_rest(instrument):
+            if f'pulley_{instrument.motors[j].pulley}' in rubs:
+                row[n] = still
         rows.append(row)
     return problem.sampled(rows)
 

@@ -21,9 +21,9 @@ from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
 
+BENT = 'presliding_friction'
 #: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
 #: takes more than its upper end is pre-sliding friction by name
-BENT = 'presliding_friction'
 BRISTLE = Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0)
 
 
@@ -97,9 +97,19 @@ def bristles(model: Model, own: Sequence[EffectUse]) -> list[EffectUse]:
     :param own: effects of the instrument file.
     :return: one effect for each pulley with dry friction, but for those whose file knows better.
     """
-    known = {u.place for u in own if u.effect == BENT and u.parameters.get('torque', 0.0) != 0.0}
+    known = {use.place for use in own if use.effect == BENT and not is_bristle(use)}
     return [
         EffectUse(BENT, place, {'torque': 0.0, 'angle': BRISTLE.value(z)}, instead=True)
         for place, z in model.bristle.items()
         if place not in known
     ]
+
+
+def is_bristle(use: EffectUse) -> bool:
+    """
+    Return whether an effect is only the angle over which another's friction builds up.
+
+    :param use: the effect.
+    :return: whether.
+    """
+    return use.effect == BENT and use.parameters.get('torque', 0.0) == 0.0

@@ -232,18 +232,13 @@ def _as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) 
     there the measured torque stands for the prediction, as far as friction reaches and to within
     a deviation of noise, so that holding still is no better than having nothing to hold.
     """
-    motors = {m.name: (j, m.pulley) for j, m in enumerate(rows.instrument.motors)}
     sensors = [s.name for s in rows.instrument.sensors]
-    for row, measured in zip(found, segment.measured, strict=True):
-        if measured.sensor.kind != 'motor_torque':
-            continue
-        j, pulley = motors[measured.sensor.of]
-        if pulley not in segment.prescribed or not rows.dry_limit[:, j].any():
+    for n, j, still in segment.at_rest(rows.instrument):
+        row, measured = found[n], segment.measured[n]
+        without_sign = numbers['sensor_rectified'][sensors.index(measured.sensor.name)]
+        if without_sign or not rows.dry_limit[:, j].any():
             continue
         gain = numbers['motor_gain'][j]
-        if numbers['sensor_rectified'][sensors.index(measured.sensor.name)]:
-            continue  # a torque without its sign
-        still = segment.still[segment.prescribed.index(pulley)]
         limit = _either_way(rows.dry_limit[:, j], still)
         used = rows.dry_friction[:, j]
         held = np.clip(measured.value - row, (used - limit) / gain, (used + limit) / gain)

@@ -7,17 +7,16 @@ bins of one length, with the noise of such a mean.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import drives, motor_channels
-from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.identify.smoothing import at_rest, smoothed
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
 
@@ -27,7 +26,6 @@ BoolArray = NDArray[np.bool_]
 BINS = 20_000  # bins of all recordings together: minutes of data are seen more coarsely
 SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
-RESTING = 0.04  # [s] within which what moves has moved by a count
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 
 
@@ -83,6 +81,21 @@ class Segment:
     start: float = 0.0
     pushed: tuple[str, ...] = ()
     still: tuple[BoolArray, ...] = ()
+
+    def at_rest(self, instrument: Instrument) -> Iterator[tuple[int, int, BoolArray]]:
+        """
+        Yield the torques of motors whose motion drives the model, and where each of them rests.
+
+        :param instrument: the network.
+        :return: for each, which of ``measured`` it is, its motor's number, and where the motor's
+            motion cannot be told from rest, shape (bins,).
+        """
+        motors = {m.name: (j, m.pulley) for j, m in enumerate(instrument.motors)}
+        for row, measured in enumerate(self.measured):
+            if measured.sensor.kind == 'motor_torque':
+                j, pulley = motors[measured.sensor.of]
+                if pulley in self.prescribed:
+                    yield row, j, self.still[self.prescribed.index(pulley)]
 
     def with_noise(self, noise: Sequence[FloatArray], shaped: Sequence[FloatArray]) -> Segment:
         """
@@ -154,23 +167,11 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         start=start,
         pushed=tuple(d.pulley for d in driving if d.by_torque),
         still=tuple(
-            _still(row, reading_error(recording[d.sensor.channel], d.sensor), period)
+            at_rest(row, reading_error(recording[d.sensor.channel], d.sensor), period)
             for d, row in zip(driving, rows, strict=True)
             if not d.by_torque
         ),
     )
-
-
-def _still(angle: FloatArray, error: float, period: float) -> BoolArray:
-    """Return where a motion stays within a count or turns, and the bins beside."""
-    window = max(3, round(RESTING / period))
-    travel = maximum_filter1d(angle, window) - minimum_filter1d(angle, window)
-    rests: BoolArray = travel < max(np.sqrt(12.0) * error, 1e-12)
-    step = np.diff(angle)
-    rests[1:-1] |= step[1:] * step[:-1] <= 0.0
-    # what rests in the middle of a window rests in all of it; and a smooth motion knows neither
-    # when rest began nor when it ended
-    return maximum_filter1d(rests.astype(np.int8), window) > 0
 
 
 def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatArray:

@@ -30,6 +30,26 @@ _SETTLES = 15  # solutions until what rests has found its place within the count
 #: the ends of a motion, where the truth turns within one count
 _FARTHEST = 2.6
 _USUAL = 0.9  # deviations that the smoother leaves
+RESTING = 0.04  # [s] within which what moves has moved by a count
+
+
+def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
+    """
+    Return where a smooth motion cannot be told from rest: within a count, or where it turns.
+
+    :param angle: on uniform bins, shape (bins,).
+    :param error: standard deviation of a reading.
+    :param period: of the bins [s].
+    :return: shape (bins,), with the bins beside.
+    """
+    window = max(3, round(RESTING / period))
+    travel = maximum_filter1d(angle, window) - minimum_filter1d(angle, window)
+    rests: BoolArray = travel < max(np.sqrt(12.0) * error, 1e-12)
+    step = np.diff(angle)
+    rests[1:-1] |= step[1:] * step[:-1] <= 0.0
+    # what rests in the middle of a window rests in all of it; and a smooth motion knows neither
+    # when rest began nor when it ended
+    return maximum_filter1d(rests.astype(np.int8), window) > 0
 
 
 def smoothed(value: FloatArray, known: BoolArray, error: float, count: float) -> FloatArray:
