@@ -1,19 +1,28 @@
 """
-Tension-proportional friction: the harder the cables press a pulley down, the more it rubs.
+Tension-proportional friction: the harder a pulley is loaded, the more it rubs.
 
 Both cables of every loop on a pulley press it onto its axis, also at rest, so preload alone makes
-friction, and a loaded instrument has more of it. The paper adds it for its Fig. 15.
+friction, and a loaded instrument has more of it. The paper adds it for its Fig. 15. Gears and
+bearings without cables rub with the torque that passes through them instead: an arm on a geared
+servo rubs most where its weight is farthest out.
 
 Equation::
 
-    |tau| <= coefficient * sum over the loops on the pulley of |R| * (t_a + t_b)
+    |tau| <= coefficient * load
 
-``t_a`` and ``t_b`` are the tensions of a loop's two cables, ``R`` is its radius on the pulley. The
-coefficient is that of a bearing as large as the pulley: for a bearing of radius r and a friction
-coefficient mu it is about mu * r / R. Cables that leave on opposite sides press less; that too
-is within the coefficient.
+    load = sum over the loops on the pulley of |R| * (t_a + t_b)           with cables
+    load = |tau_outside| + sum over its couplings of |tau_coupling|        without
 
-Source: the paper's Fig. 15; bearing friction by its load is textbook.
+``t_a`` and ``t_b`` are the tensions of a loop's two cables, ``R`` is its radius on the pulley.
+``tau_outside`` is what contacts, gravity, springs and disturbances do to a pulley without cables,
+``tau_coupling`` what a coupling transmits to it. With cables the coefficient is that of a bearing
+as large as the pulley: for a bearing of radius r and a friction coefficient mu it is about
+mu * r / R. Cables that leave on opposite sides press less; that too is within the coefficient.
+Without, it is the part of the torque that is lost: 0.2 is a gear of 80 % efficiency.
+
+What is left out: a gear that accelerates an inertia rubs by that torque as well.
+
+Source: the paper's Fig. 15; bearing friction by its load and losses of gears are textbook.
 """
 
 from __future__ import annotations
@@ -37,7 +46,7 @@ EFFECT = Effect(
         Parameter(
             name='coefficient',
             unit='1',
-            meaning='friction by the load of the cables',
+            meaning='friction by the load',
             neutral=0.0,
             low=0.0,
             high=1.0,

@@ -153,6 +153,9 @@ class _Packer:
             _put(m, at[name.upper()], numbers[name][order])
         _put(m, at['LASH'], 0.5 * numbers['lash'][order])
         width = at['WIDTH']
+        cabled = {i for row in at.loop_pulley[: len(one.loops)] for i in row}
+        for i in range(n):
+            d[at['GEARED'] + i] = int(i not in cabled)
         for k, row in enumerate(at.loop_pulley):
             for e, i in enumerate(row):
                 m[at['RADIUS'] + width * k + e] = numbers['radius'][k, order[i]]

@@ -42,7 +42,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     },
     'd': {
         'DRIVE': 'N', 'MOTION': 'N', 'PUSH': 'N', 'REFERENCE': 'U', 'ENCODER': 'U',
-        'INTEGRAL': 'U', 'BRISTLE': 'N', 'DRY': 'N', 'DRIVEN': '1', 'PUSHED': '1',
+        'INTEGRAL': 'U', 'BRISTLE': 'N', 'DRY': 'N', 'GEARED': 'N', 'DRIVEN': '1', 'PUSHED': '1',
         'BRISTLED': '1', 'CURVE_CELLS': 'M', 'CURVE_OFFSET': 'M',
         'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1',
         'ACTIVE': '1', 'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1',
@@ -54,7 +54,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'ACCELERATION': 'N', 'DELTA': 'M', 'RATE': 'M', 'SHIFT': 'M', 'SHIFT_D': 'M',
         'TENSION': 'M', 'TENSION_D': 'M', 'TENSION_R': 'M', 'TOTAL': 'M', 'TOTAL_D': 'M',
         'SLACK': 'M',
-        'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N', 'BUDGET': 'N',
+        'TORQUE': 'N', 'TORQUE_T': 'N', 'TORQUE_W': 'N', 'LOAD': 'N',
+        'LOAD_T': 'N', 'LOAD_W': 'N', 'LOAD_WAY': 'N', 'BUDGET': 'N',
         'BUDGET_W': 'N', 'BUDGET_L': 'N', 'SIDE': 'N', 'GAP': 'K', 'FORCE': 'K', 'FORCE_Q': 'K',
         'FORCE_V': 'K', 'STATE_RATE': 'STATES', 'STATE_A': 'STATES', 'STATE_B': 'STATES',
         'STATE_Z': 'STATES', 'STATE_T': 'STATES', 'STATE_S': 'STATES', 'J_LOOP': 'M',

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument import Coupling, EffectUse, Pulley
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict, Simulation
 
@@ -86,6 +86,44 @@ def test_tension_friction_holds_by_the_tension(bench_rig, linear, pretension):
     )  # fmt: skip
     away = rows.time[np.argmax(rows.velocity[:, 4] != 0.0)]
     assert 0.1 * away == pytest.approx(0.1 * 0.03 * 4.0 * pretension, rel=0.03)
+
+
+def test_without_cables_the_load_is_what_passes_through(body):
+    # an arm swung slowly by its motor: a fifth of what its weight asks for is lost on the way
+    arm = body(
+        effects=(
+            EffectUse('gravity', 'pulley_body', {'torque': 0.4, 'phase': 0.0}),
+            EffectUse('tension_friction', 'pulley_body', {'coefficient': 0.2}),
+        )
+    )
+    time = 1e-3 * np.arange(4001)
+    swing, speed = 0.8 * np.sin(0.5 * np.pi * time), 0.4 * np.pi * np.cos(0.5 * np.pi * time)
+    rows = predict(arm, Signals(swing[None, :], speed[None, :], 0.0, 1e-3), ('body',), 4000)
+    angle, speed = rows.angle[:, 0], rows.velocity[:, 0]
+    inertial = -0.01 * (0.5 * np.pi) ** 2 * angle
+    held = rows.effort[:, 0] - inertial - 0.4 * np.sin(angle)
+    moving = np.abs(speed) > 0.01
+    expected = 0.2 * 0.4 * np.abs(np.sin(angle)) * np.sign(speed)
+    assert held[moving] == pytest.approx(expected[moving], abs=1e-4)
+
+
+def test_a_gear_rubs_with_what_it_transmits(body):
+    # a motor holds a weight through a shaft; its own pulley loses a part of what the shaft carries
+    plain = body()
+    rig = replace(
+        plain,
+        pulleys=(*plain.pulleys, Pulley('weight', 0.01, 0.5)),
+        couplings=(Coupling('shaft', {'body': 1.0, 'weight': -1.0}, 50.0, 0.05),),
+        effects=(
+            EffectUse('joint_spring', 'pulley_weight', {'stiffness': 3.0}),
+            EffectUse('tension_friction', 'pulley_body', {'coefficient': 0.1}),
+        ),
+    )
+    ramp = np.interp(1e-3 * np.arange(4001), [0.0, 2.0, 4.0], [0.0, 0.4, 0.1])
+    rows = predict(rig, Signals.through(0.0, 1e-3, ramp[None, :]), ('body',), 4000)
+    carried = rows.loop_force[:, 0]
+    for at, way in ((1500, 1.0), (3500, -1.0)):
+        assert rows.effort[at, 0] == pytest.approx((1.0 + 0.1 * way) * carried[at], rel=1e-3)
 
 
 def test_friction_never_gives_power(bench_rig, linear):

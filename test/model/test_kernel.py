@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.model.engine import compiler_installed
-from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument import Coupling, EffectUse
 from tendon_ros.model.layout import arrays_of
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
@@ -146,10 +146,32 @@ def smooth_rig(bench_rig, effects=()):
                    loops=tuple(replace(loop, pretension=40.0) for loop in rig.loops))  # fmt: skip
 
 
+def geared_rig(bench_rig):
+    """Return the rig with gears for its cables, all rubbing with what passes through them."""
+    rubbing = [('tension_friction', f'pulley_{n}', {'coefficient': 0.2}) for n in 'ML123']
+    rig = smooth_rig(bench_rig, (*rubbing, *IN_SITU['gravity'], *IN_SITU['eccentricity']))
+    gears = tuple(
+        Coupling(loop.name, {name: 20.0 * arm for name, arm in loop.route.items()}, 30.0)
+        for loop in rig.loops
+    )
+    return replace(rig, loops=(), curves=(), couplings=gears)
+
+
 @pytest.mark.parametrize('name', IN_SITU)
 def test_the_reduced_system_is_the_dense_one_with_every_law(bench_rig, name):
     ours, dense, *_ = Stepper(smooth_rig(bench_rig, IN_SITU[name])).linear_solves()
     assert np.abs(ours - dense).max() < 1e-6 * np.abs(dense).max()
+
+
+@pytest.mark.parametrize('driven', [{}, {'motion': ('M',)}])
+def test_the_reduced_system_is_the_dense_one_with_gears(bench_rig, driven):
+    stepper = Stepper(geared_rig(bench_rig), **driven)
+    ours, dense, kicks, by_time = stepper.linear_solves()
+    assert np.abs(ours - dense).max() < 1e-6 * np.abs(dense).max()
+    assert kicks == pytest.approx(by_time, rel=1e-5, abs=1e-2)
+    order, error = stepper.order()
+    assert order > 3.5
+    assert error < 1e-4
 
 
 @pytest.mark.parametrize('how', ['motion', 'references'])

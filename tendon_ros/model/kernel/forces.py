@@ -11,12 +11,13 @@ from tendon_ros.model.kernel.loops import clipped, pull, smooth, wind
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
     BUDGET_W, COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON,
-    CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING, DRIVE,
-    DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, INERTIA, INPUT, INTEGRAL,
-    Ints, K, KD, KI, KP, LIMIT, LOAD, LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN,
-    MOTOR_LIMIT, MOTOR_PULLEY, N, PUSH, PUSHED, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B,
-    STATE_RATE, STATE_T, STATE_Z, STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL,
-    TOUCH, TURN, U, WIDTH, budget_law, torque_law,
+    CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING,
+    DRIVE, DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, GEARED, INERTIA,
+    INPUT, INTEGRAL, Ints, K, KD, KI, KP, LIMIT, LOAD, LOAD_T, LOAD_W, LOAD_WAY,
+    LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N,
+    PUSH, PUSHED, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B, STATE_RATE, STATE_T, STATE_Z,
+    STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL, TOUCH, TURN, U, WIDTH,
+    budget_law, torque_law,
 )  # fmt: skip
 
 
@@ -54,6 +55,37 @@ def touch(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
             w[FORCE_V + k] = 0.0
 
 
+def burden(d: Ints, w: Floats) -> None:
+    """
+    Begin the load of every pulley: on one without cables, what acts on it from outside.
+
+    Called when contacts and laws are all that the torques hold so far.
+    """
+    for i in range(N):
+        way = 0.0
+        if d[GEARED + i] == 1:
+            way = 1.0 if w[TORQUE + i] > 0.0 else -1.0
+        w[LOAD_WAY + i] = way
+        w[LOAD + i] = way * w[TORQUE + i]
+        w[LOAD_T + i] = way * w[TORQUE_T + i]
+        w[LOAD_W + i] = way * w[TORQUE_W + i]
+
+
+def press(m: Floats, d: Ints, w: Floats) -> None:
+    """Add what cables, and couplings where there are no cables, put on every pulley."""
+    for k in range(M):
+        for e in range(WIDTH):
+            n = WIDTH * k + e
+            i = LOOP_PULLEY[n]
+            if d[GEARED + i] == 0:
+                w[LOAD + i] += abs(m[RADIUS + n]) * w[TOTAL + k]
+            else:
+                torque = m[ARM + n] * w[TURN + i] * w[TENSION + k]
+                way = 1.0 if torque > 0.0 else -1.0
+                w[LOAD + i] += way * torque
+                w[LOAD_T + i] += way * m[ARM + n] * w[CURL + i] * w[TENSION + k]
+
+
 def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
     """Set the largest dry friction of every pulley, and which part of it acts which way."""
     for i in range(N):
@@ -63,11 +95,7 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
         w[SIDE + i] = 0.0
     if d[BUDGETS + 1] == 0:
         return
-    for i in range(N):
-        w[LOAD + i] = 0.0
-    for k in range(M):
-        for e in range(WIDTH):
-            w[LOAD + LOOP_PULLEY[WIDTH * k + e]] += abs(m[RADIUS + WIDTH * k + e]) * w[TOTAL + k]
+    press(m, d, w)
     for i in range(N):
         omega = w[at + N + i]
         z = d[BRISTLE + i]
@@ -152,22 +180,9 @@ def evaluate(
     pull(m, d, w, at)
     touch(m, d, w, g, at)
     for i in range(N):
+        w[TORQUE + i] = 0.0
         w[TORQUE_T + i] = 0.0
-        w[TORQUE_W + i] = -m[DAMPING + i]
-    drive(m, d, w, s, c, t, at)
-    for i in range(N):
-        w[TORQUE + i] = w[INPUT + i] - m[DAMPING + i] * w[at + N + i]
-    if d[PUSHED] > 0:
-        for i in range(N):
-            if d[PUSH + i] >= 0:
-                push, _, _ = smooth(s, d[PUSH + i], t)
-                w[TORQUE + i] += push
-    for k in range(M):
-        for e in range(WIDTH):
-            i = LOOP_PULLEY[WIDTH * k + e]
-            arm = m[ARM + WIDTH * k + e]
-            w[TORQUE + i] -= arm * w[TURN + i] * w[TENSION + k]
-            w[TORQUE_T + i] -= arm * w[CURL + i] * w[TENSION + k]
+        w[TORQUE_W + i] = 0.0
     for k in range(K):
         for e in range(WIDTH):
             i = CONTACT_PULLEY[WIDTH * k + e]
@@ -179,6 +194,22 @@ def evaluate(
         w[TORQUE + i] += torque
         w[TORQUE_T + i] += by_t
         w[TORQUE_W + i] += by_w
+    burden(d, w)
+    drive(m, d, w, s, c, t, at)
+    for i in range(N):
+        w[TORQUE + i] += w[INPUT + i] - m[DAMPING + i] * w[at + N + i]
+        w[TORQUE_W + i] -= m[DAMPING + i]
+    if d[PUSHED] > 0:
+        for i in range(N):
+            if d[PUSH + i] >= 0:
+                push, _, _ = smooth(s, d[PUSH + i], t)
+                w[TORQUE + i] += push
+    for k in range(M):
+        for e in range(WIDTH):
+            i = LOOP_PULLEY[WIDTH * k + e]
+            arm = m[ARM + WIDTH * k + e]
+            w[TORQUE + i] -= arm * w[TURN + i] * w[TENSION + k]
+            w[TORQUE_T + i] -= arm * w[CURL + i] * w[TENSION + k]
     rub(m, d, w, g, at)
     for i in range(N):
         w[F + i] = w[at + N + i]

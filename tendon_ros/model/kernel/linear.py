@@ -11,12 +11,13 @@ from __future__ import annotations
 from tendon_ros.model.kernel.loops import smooth
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, ARM, BAND, BUDGET_L, BUDGET_W, CHI, CONTACT_ARM, CONTACT_PULLEY,
-    CONTACT_RATIO, DRIVE, FOLLOW, FORCE_Q, FORCE_V, Floats, INERTIA, INTEGRAL, Ints, J_A,
-    J_ANGLE, J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS,
-    J_RADIUS, J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOOP_PULLEY, M, MATRIX, MODE,
-    MOTOR_GAIN, MOTOR_PULLEY, N, OUTER, PUSH, RADIUS, REFERENCE, RIGHT, SIDE, SIGMA, SPAN,
-    START, STATE_A, STATE_B, STATE_LOOP, STATE_PULLEY, STATE_S, STATE_T, STATE_Z, TENSION_D,
-    TENSION_R, TORQUE_T, TORQUE_W, TOTAL_D, TURN, U, WIDTH,
+    CONTACT_RATIO, DRIVE, FOLLOW, FORCE_Q, FORCE_V, Floats, GEARED, INERTIA, INTEGRAL, Ints,
+    J_A, J_ANGLE, J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS,
+    J_RADIUS, J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOAD_T, LOAD_W, LOAD_WAY,
+    LOOP_PULLEY, M, MATRIX, MODE, MOTOR_GAIN, MOTOR_PULLEY, N, OUTER, PUSH, RADIUS, REFERENCE,
+    RIGHT, SIDE, SIGMA, SPAN, START, STATE_A, STATE_B, STATE_LOOP, STATE_PULLEY, STATE_S,
+    STATE_T, STATE_Z, TENSION, TENSION_D, TENSION_R, TORQUE_T, TORQUE_W, TOTAL_D, TURN, U,
+    WIDTH,
 )  # fmt: skip
 
 
@@ -30,16 +31,23 @@ def linearise(m: Floats, d: Ints, w: Floats) -> None:
             n = WIDTH * k + e
             i = LOOP_PULLEY[n]
             w[J_RADIUS + n] = m[RADIUS + n] * w[TURN + i] * w[FOLLOW + i]
+            grip = w[SIDE + i] * w[BUDGET_L + i]
             w[J_ARM + n] = m[ARM + n] * w[TURN + i]
-            w[J_GRIP + n] = w[SIDE + i] * w[BUDGET_L + i] * abs(m[RADIUS + n])
+            w[J_GRIP + n] = grip * abs(m[RADIUS + n])
+            if d[GEARED + i] == 1:  # its couplings press by what they transmit
+                way = 1.0 if w[J_ARM + n] * w[TENSION + k] > 0.0 else -1.0
+                w[J_ARM + n] *= 1.0 - way * grip
     for i in range(N):
-        w[J_ANGLE + i] = w[TORQUE_T + i]
-        w[J_SPEED + i] = w[TORQUE_W + i] + w[SIDE + i] * w[BUDGET_W + i]
+        grip = w[SIDE + i] * w[BUDGET_L + i]
+        w[J_ANGLE + i] = w[TORQUE_T + i] + grip * w[LOAD_T + i]
+        w[J_SPEED + i] = w[TORQUE_W + i] + grip * w[LOAD_W + i] + w[SIDE + i] * w[BUDGET_W + i]
     for k in range(K):
         w[J_CONTACT + k] = m[CONTACT_ARM + k] * w[FORCE_Q + k]
         w[J_CONTACT_RATE + k] = m[CONTACT_ARM + k] * w[FORCE_V + k]
         for e in range(WIDTH):
-            w[J_PRESS + WIDTH * k + e] = m[CONTACT_RATIO + WIDTH * k + e]
+            i = CONTACT_PULLEY[WIDTH * k + e]
+            grip = w[SIDE + i] * w[BUDGET_L + i] * w[LOAD_WAY + i]
+            w[J_PRESS + WIDTH * k + e] = m[CONTACT_RATIO + WIDTH * k + e] * (1.0 + grip)
     for z in range(d[ACTIVE]):
         w[J_A + z] = w[STATE_A + z]
         w[J_B + z] = w[STATE_B + z]

@@ -93,6 +93,7 @@ ENCODER: int  # U: the sensor that each controller reads
 INTEGRAL: int  # U: auxiliary state that integrates a continuous controller's error, or -1
 BRISTLE: int  # N: auxiliary state of the pre-sliding friction, or -1
 DRY: int  # N: 1 where dry friction sticks rigidly
+GEARED: int  # N: 1 where no cable runs, and what passes through the pulley is its load
 DRIVEN: int  # how many pulleys are prescribed, pushed by a signal, pre-sliding
 PUSHED: int
 BRISTLED: int
@@ -135,7 +136,10 @@ SLACK: int  # M: elongation left until one cable goes slack; negative: slack
 TORQUE: int  # N: all torques but inertia and dry friction
 TORQUE_T: int  # N: and its derivatives by the pulley's own angle and velocity
 TORQUE_W: int
-LOAD: int  # N: sum over the cables on the pulley of |radius| * tension
+LOAD: int  # N: sum over the cables on the pulley of |radius| * tension, or what passes through
+LOAD_T: int  # N: without cables, derivatives by the pulley's own angle and velocity
+LOAD_W: int
+LOAD_WAY: int  # N: without cables, the sign of what acts from outside; else 0
 BUDGET: int  # N: largest dry friction
 BUDGET_W: int
 BUDGET_L: int
