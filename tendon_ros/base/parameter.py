@@ -13,7 +13,8 @@ class Parameter:
 
     ``neutral`` changes nothing, or is NaN where the parameter only shapes what others switch on;
     then ``typical`` is what a fit starts from. ``low`` and ``high`` bound what is physically
-    possible. ``typical`` is also the size at which the effect is worth looking for. ``search``
+    possible. ``typical`` is also the size at which the effect is worth looking for, of forces in an
+    instrument that takes a newton metre or so. ``search``
     says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
     recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
     ``level`` (of the motor's torque), ``share`` (all or nothing); what it is to the size beside

@@ -22,7 +22,7 @@ from tendon_ros.diagnose.intervals import parameter_intervals
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
-from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.candidate import Candidate, magnitude
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BRISTLE, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -101,7 +101,12 @@ def calibrate(
     report('looking at the recordings', 0.0)
     intake = admitted(recordings, plain)
     ready = prepared(intake.recordings, plain)
-    start = _start(ready.problem, fitted, [use for use in rest if is_bristle(use)])
+    start = _start(
+        ready.problem,
+        fitted,
+        [use for use in rest if is_bristle(use)],
+        magnitude(intake.recordings, plain),
+    )
     if not start.causes and not ready.problem.tolerances:
         raise RecordingError(
             f'{instrument.name}: nothing to calibrate: the file has no effects and leaves no '
@@ -144,11 +149,16 @@ def _is_fitted(use: EffectUse) -> bool:
     return one.scales and not one.instants and not is_bristle(use)
 
 
-def _start(problem: Problem, effects: Sequence[EffectUse], bristles: Sequence[EffectUse]) -> Model:
+def _start(
+    problem: Problem,
+    effects: Sequence[EffectUse],
+    bristles: Sequence[EffectUse],
+    magnitude: float,
+) -> Model:
     """Return the model that the file is."""
     model = problem.empty
     for use in effects:
-        candidate = Candidate(use.effect, use.place)
+        candidate = Candidate(use.effect, use.place, magnitude=magnitude)
         neutral = {p.name: p.neutral for p in candidate.parameters}
         model = model.joined(candidate, {**neutral, **use.parameters})
     known = {use.place: BRISTLE.place(use.parameters['angle']) for use in bristles}

@@ -77,7 +77,7 @@ class Memory:
         """
         rows = [
             {
-                'causes': [[c.effect, c.place, c.only, c.given] for c in m.causes],
+                'causes': [[c.effect, c.place, c.only, c.given, c.magnitude] for c in m.causes],
                 'z': [list(row) for row in m.z],
                 'bristle': dict(m.bristle),
                 'moved': m.moved.tolist(),
@@ -95,5 +95,8 @@ class Memory:
             self._path.unlink()
 
 
-def _candidate(effect: str, place: str, only: str, given: Sequence[Sequence[Any]]) -> Candidate:
-    return Candidate(effect, place, only, tuple((str(n), float(v)) for n, v in given))
+def _candidate(
+    effect: str, place: str, only: str, given: Sequence[Sequence[Any]], magnitude: float
+) -> Candidate:
+    known = tuple((str(n), float(v)) for n, v in given)
+    return Candidate(effect, place, only, known, float(magnitude))

@@ -29,7 +29,7 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.candidate import Candidate, everyone, magnitude
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.model.instrument import Instrument
 
@@ -80,7 +80,9 @@ def diagnose(
     intake = admitted(recordings, instrument)
     ready = prepared(intake.recordings, instrument)
     measured = {name for r in intake.recordings for name in r.channels}
-    candidates = everyone(instrument, sorted(measured), withhold)
+    candidates = everyone(
+        instrument, sorted(measured), withhold, magnitude(intake.recordings, instrument)
+    )
     ready, found = _searched(ready, candidates, jobs, report, memory)
     problem = ready.problem
     report('judging', 0.85)

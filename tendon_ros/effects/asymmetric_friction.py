@@ -44,7 +44,7 @@ EFFECT = Effect(
             meaning='friction of motion along +theta',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.08,
         ),
         Parameter(
@@ -53,7 +53,7 @@ EFFECT = Effect(
             meaning='friction of motion along -theta',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.03,
         ),
     ),

@@ -44,7 +44,7 @@ EFFECT = Effect(
             meaning='half of the height of the full loop',
             neutral=0.0,
             low=0.0,
-            high=100.0,
+            high=1e5,
             typical=2.0,
         ),
         Parameter(

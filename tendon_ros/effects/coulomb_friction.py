@@ -37,7 +37,7 @@ EFFECT = Effect(
             meaning='friction at any speed',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.05,
         ),
     ),

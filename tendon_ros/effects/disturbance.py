@@ -40,8 +40,8 @@ EFFECT = Effect(
             unit='N m',
             meaning='torque while it lasts',
             neutral=0.0,
-            low=-10.0,
-            high=10.0,
+            low=-1e5,
+            high=1e5,
             typical=0.2,
         ),
         Parameter(

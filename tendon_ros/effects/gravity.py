@@ -37,8 +37,8 @@ EFFECT = Effect(
             unit='N m',
             meaning='largest torque, a quarter turn away from hanging',
             neutral=0.0,
-            low=-10.0,
-            high=10.0,
+            low=-1e5,
+            high=1e5,
             typical=0.1,
         ),
         Parameter(

@@ -36,7 +36,7 @@ EFFECT = Effect(
             meaning='torque by angle',
             neutral=0.0,
             low=0.0,
-            high=100.0,
+            high=1e6,
             typical=0.2,
         ),
         Parameter(

@@ -56,7 +56,7 @@ EFFECT = Effect(
             meaning='friction when fully built up',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.05,
         ),
         Parameter(

@@ -50,7 +50,7 @@ EFFECT = Effect(
             meaning='what static friction adds to the sliding one',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.1,
         ),
         Parameter(
@@ -59,7 +59,7 @@ EFFECT = Effect(
             meaning='friction that remains at high speed',
             neutral=0.0,
             low=0.0,
-            high=10.0,
+            high=1e5,
             typical=0.04,
         ),
         Parameter(
@@ -68,7 +68,7 @@ EFFECT = Effect(
             meaning='speed at which half of the static part is gone',
             neutral=math.nan,
             low=1e-3,
-            high=50.0,
+            high=1e3,
             typical=0.1,
         ),
     ),

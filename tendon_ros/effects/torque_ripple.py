@@ -40,8 +40,8 @@ EFFECT = Effect(
             unit='N m',
             meaning='largest torque of the ripple',
             neutral=0.0,
-            low=-5.0,
-            high=5.0,
+            low=-1e5,
+            high=1e5,
             typical=0.02,
         ),
         Parameter(

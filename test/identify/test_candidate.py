@@ -1,10 +1,18 @@
 """Candidates: every effect wherever it can act, and nowhere else."""
 
+from dataclasses import replace
+
 import pytest
 
 from tendon_ros.base.errors import TendonError
 from tendon_ros.effects import catalogue, find
-from tendon_ros.identify.candidate import Candidate, check_withheld, everyone, starts
+from tendon_ros.identify.candidate import (
+    Candidate,
+    check_withheld,
+    everyone,
+    magnitude,
+    starts,
+)
 from tendon_ros.model.numbers import place_index
 
 
@@ -42,6 +50,26 @@ def test_withheld_everywhere_or_at_one_place(bench, channels):
     assert full - without == {('pretension', f'cable_{c}') for c in ('m1', '12', 'L3')} | {
         ('coulomb_friction', 'pulley_3')
     }
+
+
+def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
+    louder = [
+        replace(c, value=20.0 * c.value)
+        for name, c in sound_run.channels.items()
+        if name.endswith('/effort')
+    ]
+    large = magnitude([sound_run.with_channels(louder)], bench)
+    assert magnitude([sound_run], bench) == 1.0
+    assert large > 3.0
+    [one] = [
+        c
+        for c in everyone(bench, sorted(sound_run.channels), (), large)
+        if (c.effect, c.place) == ('stribeck_friction', 'pulley_3')
+    ]
+    small = replace(one, magnitude=1.0)
+    for was, now in zip(small.parameters, one.parameters, strict=True):
+        times = large if was.unit == 'N m' else 1.0
+        assert (now.typical, now.high) == pytest.approx((times * was.typical, times * was.high))
 
 
 @pytest.mark.parametrize(

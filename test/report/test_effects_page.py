@@ -35,8 +35,8 @@ def test_section_shows_the_equation_as_a_block():
 
 def test_section_tells_neutral_from_shape():
     rows = [line for line in section('stribeck_friction').split('\n') if line.startswith('| `')]
-    assert rows[0].endswith('| 0 | 0 | 10 | 0.1 |')
-    assert rows[2].endswith('| – | 0.001 | 50 | 0.1 |')
+    assert rows[0].endswith('| 0 | 0 | 100000 | 0.1 |')
+    assert rows[2].endswith('| – | 0.001 | 1000 | 0.1 |')
 
 
 def test_write(tmp_path):
