@@ -11,14 +11,14 @@ class Parameter:
     """
     One number of an effect, in SI units.
 
-    ``neutral`` changes nothing, or is NaN where the parameter only shapes what others switch on;
-    then ``typical`` is what a fit starts from. ``low`` and ``high`` bound what is physically
-    possible. ``typical`` is also the size at which the effect is worth looking for, of forces in an
-    instrument that takes a newton metre or so. ``search``
-    says how a fit finds its start where a coarse grid would miss it: ``instant`` (a time of the
-    recording), ``duration`` (of something that begins at an instant), ``cycles`` (of a turn),
-    ``level`` (of the motor's torque), ``share`` (all or nothing); what it is to the size beside
-    it: its ``phase``, the angle at which it comes to ``rest``; ``shape``: a shape in spite of its
+    ``neutral`` changes nothing, or is NaN where the parameter only shapes what others switch
+    on; then ``typical`` is what a fit starts from. ``low`` and ``high`` bound what is
+    physically possible. ``typical`` is also the size at which the effect is worth looking for,
+    of forces in an instrument that takes a newton metre or so. ``search`` says how a fit finds
+    its start where a coarse grid would miss it: ``instant`` (a time of the recording),
+    ``duration`` (of something that begins at an instant), ``cycles`` (of a turn), ``level``
+    (of the motor's torque), ``share`` (all or nothing); what it is to the size beside it: its
+    ``phase``, the angle at which it comes to ``rest``; ``shape``: a shape in spite of its
     neutral value; or ``guess``: fitted only where an instrument file says that it is a guess.
     """
 
