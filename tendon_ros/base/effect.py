@@ -67,6 +67,7 @@ class Effect:
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
     ``form``: how far the law may be from that of a machine which does have the effect, as a part
     of what the effect does: geometry and scales are exact, friction is not, creep least of all.
+    ``by_load``: what it does grows with what other effects do to its place.
     ``other(**parameters)``: the name and parameters of a simpler effect that these make it, if
     any.
     """
@@ -79,6 +80,7 @@ class Effect:
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
     form: float = 0.01
+    by_load: bool = False
     other: Callable[..., tuple[str, dict[str, float]] | None] | None = None
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None

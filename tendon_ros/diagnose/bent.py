@@ -22,6 +22,9 @@ from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 HOLDS = 0.75
 #: waves of a ripple that a motor has to pass
 SEEN = 0.5
+#: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
+#: a spring
+YIELDS = 0.25
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -34,8 +37,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param candidate: the effect.
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
-        a delay that a controller's hold makes, a ripple of which not half a wave was seen, a
-        number of the file within its tolerance.
+        a delay that a controller's hold makes, a ripple of which not half a wave was seen,
+        friction that never yields, a number of the file within its tolerance.
     """
     for t in problem.tolerances:
         if t.is_moved_by(candidate):
@@ -57,20 +60,29 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
             return True
         if p.search == 'cycles' and values[p.name] * _turned(problem, candidate.place) < SEEN:
             return True
+    if candidate.effect == 'presliding_friction':
+        travel = _travel(problem, candidate.place.removeprefix('pulley_'))
+        if travel is not None and values['angle'] > YIELDS * travel:
+            return True
     return simpler(candidate, values) is not None
 
 
 def _turned(problem: Problem, place: str) -> float:
     """Return how far a motor turned in any recording, in turns; one where nothing tells."""
     motors = problem.rollouts.instrument.motors
-    pulleys = [m.pulley for m in motors if f'motor_{m.name}' == place]
+    [pulley] = [m.pulley for m in motors if f'motor_{m.name}' == place]
+    travel = _travel(problem, pulley)
+    return 1.0 if travel is None else travel / (2.0 * np.pi)
+
+
+def _travel(problem: Problem, pulley: str) -> float | None:
+    """Return how far a driven pulley turned in any recording [rad]; None where nothing tells."""
     travels = [
         float(np.ptp(segment.motion.value[segment.prescribed.index(pulley)]))
         for segment in problem.rollouts.segments
-        for pulley in pulleys
         if pulley in segment.prescribed
     ]
-    return max(travels) / (2.0 * np.pi) if travels else 1.0
+    return max(travels, default=None)
 
 
 def simpler(

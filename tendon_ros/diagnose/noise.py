@@ -7,7 +7,7 @@ stiff cables; and how far the machine agrees with itself where it does the same 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +24,10 @@ from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+COUNTED = 1.0  # [s] over which what counts make of a channel is much the same
+STARTS = 0.3  # [s] in which a motion starts or stops
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,12 @@ class Noise:
     What is known of the noise, whatever the model.
 
     ``counts``: what the motion's counts make of each channel, by recording and channel, shape
-    (bins,) each, in the channel's unit.
+    (bins,) each, in the channel's unit. ``resting``: of each recording the channels of motors'
+    torques, with where the motor cannot be told from rest, shape (bins,).
     """
 
     counts: tuple[tuple[FloatArray, ...], ...]
+    resting: tuple[Mapping[int, BoolArray], ...]
 
     def given(self, segments: Sequence[Segment], predicted: Sequence[FloatArray]) -> list[Segment]:
         """
@@ -50,12 +56,16 @@ class Noise:
             for segment, rows in zip(segments, predicted, strict=True)
         ]
         found = []
-        for segment, rows, by_counts, apart in zip(
-            segments, left, self.counts, unrepeated(segments, left), strict=True
+        for segment, rows, by_counts, apart, resting in zip(
+            segments, left, self.counts, unrepeated(segments, left), self.resting, strict=True
         ):
             noise, shaped = [], []
-            for m, row, c, a in zip(segment.measured, rows, by_counts, apart, strict=True):
+            for n, (m, row, c, a) in enumerate(
+                zip(segment.measured, rows, by_counts, apart, strict=True)
+            ):
                 h = heard(m, row, segment.period)
+                if n in resting:
+                    c = _no_quieter(c, resting[n])
                 # what is heard and what counts make does not repeat itself either
                 shaped.append(np.sqrt(c**2 + max(0.0, a**2 - h**2 - float(np.mean(c**2)))))
                 noise.append(np.hypot(h, shaped[-1]))
@@ -82,8 +92,22 @@ def noise_of_counts(
         tuple(
             _counted(instrument, segment, recording, rows)
             for segment, recording, rows in zip(segments, recordings, predicted, strict=True)
-        )
+        ),
+        tuple({row: still for row, _, still in s.at_rest(instrument)} for s in segments),
     )
+
+
+def _no_quieter(counts: FloatArray, still: BoolArray) -> FloatArray:
+    """
+    Return what counts make of a motor's torque, where it rests no less than where it moves.
+
+    Friction and cogging hold a motor with any torque: a hold of minutes must not outweigh all that
+    moves because nothing trembles there.
+    """
+    moving = counts[~still]
+    if not moving.size:
+        return counts
+    return np.where(still, np.maximum(counts, np.median(moving)), counts)
 
 
 def heard(measured: Measured, left: FloatArray, period: float) -> float:
@@ -109,40 +133,71 @@ def _counted(
     instrument: Instrument, segment: Segment, recording: Recording, predicted: FloatArray
 ) -> tuple[FloatArray, ...]:
     """Return what the motion's counts make of each channel, shape (bins,)."""
-    [disturbed] = Rollouts(
-        instrument, [replace(segment, motion=_recounted(instrument, segment, recording))]
-    ).predicted([[]])
-    window = max(3, round(1.0 / segment.period))
-    level = np.full(window, 1.0 / window)
-    return tuple(
-        np.sqrt(np.convolve((other - row) ** 2, level, mode='same')[: len(row)])
-        for row, other in zip(predicted, disturbed, strict=True)
+    recounted, smoother = (
+        Rollouts(instrument, [replace(segment, motion=motion)]).predicted([[]])[0]
+        for motion in (
+            _recounted(instrument, segment, recording),
+            _smoother(instrument, segment, recording),
+        )
     )
+    return tuple(
+        np.hypot(
+            _level(counted - row, segment.period, COUNTED),
+            _level(once - row, segment.period, STARTS),
+        )
+        for row, counted, once in zip(predicted, recounted, smoother, strict=True)
+    )
+
+
+def _level(change: FloatArray, period: float, seconds: float) -> FloatArray:
+    """Return the root mean square about each bin, shape (bins,)."""
+    window = max(3, round(seconds / period))
+    level = np.full(window, 1.0 / window)
+    power: FloatArray = np.convolve(change**2, level, mode='same')[: len(change)]
+    return np.sqrt(power)
 
 
 def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:
     """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
-    rows = []
-    sensors = {s.channel: s for s in instrument.sensors}
-    for row, name in enumerate(encoder_channels(instrument)):
-        motion = segment.motion.value[row]
-        error = reading_error(recording[name], sensors[name])
+
+    def again(motion: FloatArray, error: float, sampling: float) -> FloatArray:
         count = error * np.sqrt(12.0)
-        if count <= 0.0:
-            rows.append(motion)
-            continue
-        sampling = float(np.median(np.diff(recording[name].time)))
-        fine = np.interp(
-            np.arange(0.0, len(motion) * segment.period, sampling),
-            segment.period * np.arange(len(motion)),
-            motion,
-        )
+        bins = segment.period * np.arange(len(motion))
+        fine = np.interp(np.arange(0.0, len(motion) * segment.period, sampling), bins, motion)
         counted = count * np.round(fine / count + 0.5) - 0.5 * count
-        again = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
-        rows.append(
-            np.interp(
-                segment.period * np.arange(len(motion)), sampling * np.arange(len(again)), again
-            )
-        )
-    rows += list(segment.motion.value[len(rows) :])
+        angle = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
+        found: FloatArray = np.interp(bins, sampling * np.arange(len(angle)), angle)
+        return found
+
+    return _moved(instrument, segment, recording, again)
+
+
+def _smoother(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:
+    """
+    Return a motion that is as near to the readings and smoother.
+
+    A motion that starts or stops within a count has an acceleration that nobody has seen.
+    """
+
+    def again(motion: FloatArray, error: float, _sampling: float) -> FloatArray:
+        known = np.ones(len(motion), dtype=np.bool_)
+        return smoothed(motion, known, error, error * np.sqrt(12.0))
+
+    return _moved(instrument, segment, recording, again)
+
+
+def _moved(
+    instrument: Instrument,
+    segment: Segment,
+    recording: Recording,
+    again: Callable[[FloatArray, float, float], FloatArray],
+) -> Signals:
+    """Return another motion, by the old one, the encoder's error and its sampling [s]."""
+    sensors = {s.channel: s for s in instrument.sensors}
+    rows = list(segment.motion.value)
+    for row, name in enumerate(encoder_channels(instrument)):
+        error = reading_error(recording[name], sensors[name])
+        if error > 0.0:
+            sampling = float(np.median(np.diff(recording[name].time)))
+            rows[row] = again(rows[row], error, sampling)
     return Signals.smooth(segment.motion.start, segment.motion.step, np.array(rows))

@@ -19,6 +19,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen, Seen
@@ -76,10 +77,12 @@ class Search:
         screen = Screen(self.problem, state, seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
-        # what leaves no trace at a typical size is not asked again
+        # what leaves no trace at a typical size is not asked again, but where others may make one
         traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
         self._steps.candidates = tuple(
-            c for c in self._steps.candidates if c.instants or (c.effect, c.place) in traced
+            c
+            for c in self._steps.candidates
+            if c.instants or find(c.effect).by_load or (c.effect, c.place) in traced
         )
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)

@@ -74,15 +74,14 @@ class Rollouts:
         )
 
     @cached_property
-    def _usual(self) -> dict[str, float]:
-        """The torque that each motor usually keeps below, by its name."""
+    def _torques(self) -> dict[str, FloatArray]:
+        """All that each motor reported, by its name."""
         found: dict[str, list[FloatArray]] = {}
         for segment in self.segments:
             for m in segment.measured:
                 if m.sensor.kind == 'motor_torque':
                     found.setdefault(m.sensor.of, []).append(m.value[np.isfinite(m.value)])
-        joined = {name: np.abs(np.concatenate(rows)) for name, rows in found.items()}
-        return {n: float(np.quantile(rows, USUAL)) for n, rows in joined.items() if rows.size}
+        return {name: np.concatenate(rows) for name, rows in found.items()}
 
     def predicted(self, uses: Sequence[Sequence[EffectUse]]) -> tuple[FloatArray, ...]:
         """
@@ -157,7 +156,7 @@ class Rollouts:
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
         found = _as_held(rows, numbers, segment, found)
-        reported = _as_reported(rows.instrument, numbers, segment, found, self._usual)
+        reported = _as_reported(rows.instrument, numbers, segment, found, self._torques)
         return _zeroed(segment, reported)
 
 
@@ -263,7 +262,7 @@ def _as_reported(
     numbers: Numbers,
     segment: Segment,
     found: FloatArray,
-    usual: Mapping[str, float],
+    torques: Mapping[str, FloatArray],
 ) -> FloatArray:
     """
     Return the predictions with the torque limits of the motors seen as the recording sees them.
@@ -282,7 +281,8 @@ def _as_reported(
             continue
         # a limit that most torques passed is none: it would excuse whatever the model asks
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-        limit = max(limit, gain * usual.get(measured.sensor.of, 0.0))
+        applied = np.abs(gain * torques[measured.sensor.of] + bias)
+        limit = max(limit, float(np.quantile(applied, USUAL)) if applied.size else 0.0)
         asked = gain * found[row] + bias
         reported = measured.level
         given = np.clip(gain * reported + bias, -limit, limit)
