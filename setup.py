@@ -33,7 +33,7 @@ FAST = ['numba>=0.59.0']
 ROS = ['ros-jazzy-rclpy[fastrtps]>=7.1.6', 'ros-jazzy-common-interfaces>=5.3.6']
 # setuptools 80 took the commands away that colcon calls.
 COLCON = ['colcon-common-extensions>=0.3.0', 'setuptools>=68,<80']
-TEST = ['hypothesis>=6.100', 'mcap-ros2-support>=0.5.3', 'pytest>=8.0']
+TEST = ['hypothesis>=6.100', 'mcap-ros2-support>=0.5.3', 'pytest>=8.0', 'pytest-xdist>=3.5']
 LINT = [
     'import-linter>=2.3',
     'mypy>=1.15',

@@ -60,6 +60,8 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     channels = {}
     for name, source in mapping.channels.items():
         raw = table.column(source.column, f'{path}: channels.{name}')
+        if source.bits is not None:
+            raw = np.where(raw >= 2.0 ** (source.bits - 1), raw - 2.0**source.bits, raw)
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
         value = value + source.offset
         if source.time is None:

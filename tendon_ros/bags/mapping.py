@@ -3,7 +3,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
 
 .. code-block:: yaml
 
-    format: npz                  # npz, csv or mat
+    format: npz                  # npz, csv, mat or json
     runs: {include: '[0-9][0-9]', header: 'hdr_{key}'}
     time: {column: 0, unit: s}   # or {rate: 1000 Hz} where the file has no time
     epoch: 2017-06-01T00:00:00Z  # header stamp of time zero; one second after 1970 by default
@@ -14,6 +14,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
         scale: 1.0               # a further factor
         sign: -1                 # turns the direction
         offset: 0.5              # added last, in the channel's SI unit
+        bits: 16                 # where a signed register was logged without its sign
         time: {column: 9, unit: us}  # where the channel has stamps of its own
     metadata: {tool: Maryland}
     attribution: Who made the data, where it was published.
@@ -21,7 +22,9 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
 
 ``value = sign · scale · unit · raw + offset``. ``runs`` is for files that hold one table a run;
 without it the file is one run, and a column is one array of the file. An empty cell is a sample
-that was not taken; with stamps of its own, a row that repeats the channel's last one is none.
+that was not taken; with stamps of its own, a row that repeats the channel's last one is none. With
+``bits``, raw numbers from the upper half of the register's range are negative ones. A JSON file
+holds a list of samples, each an object of numbers, or a list of numbers for each column.
 """
 
 from __future__ import annotations
@@ -135,6 +138,7 @@ class Source(_Strict):
     scale: float = 1.0
     sign: Literal[1, -1] = 1
     offset: float = 0.0
+    bits: Annotated[int, Field(ge=2, le=64, strict=True)] | None = None
     time: Time | None = None
 
     @field_validator('scale')
@@ -148,7 +152,7 @@ class Source(_Strict):
 class Mapping(_Strict):
     """A mapping file."""
 
-    format: Literal['npz', 'csv', 'mat']
+    format: Literal['npz', 'csv', 'mat', 'json']
     runs: Runs | None = None
     time: Time
     epoch: datetime = datetime(1970, 1, 1, 0, 0, 1, tzinfo=UTC)
@@ -180,8 +184,8 @@ class Mapping(_Strict):
 
     @model_validator(mode='after')
     def _runs_fit(self) -> Mapping:
-        if self.runs is not None and self.format == 'csv':
-            raise ValueError('runs: a CSV file is one run; leave it out')
+        if self.runs is not None and self.format in ('csv', 'json'):
+            raise ValueError(f'runs: a {self.format.upper()} file is one run; leave it out')
         return self
 
 

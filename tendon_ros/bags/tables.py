@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import csv
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
+import json
 from pathlib import Path
 from typing import Any
 import zipfile
@@ -63,7 +64,7 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
     Find the runs of a file; each is unpacked only when it is asked for.
 
     :param path: the foreign file.
-    :param kind: ``npz``, ``csv`` or ``mat``.
+    :param kind: ``npz``, ``csv``, ``mat`` or ``json``.
     :param runs: which arrays are runs; None where the whole file is one.
     :return: key → a function that reads the run.
     :raises RecordingError: where the file cannot be read, or holds no run.
@@ -74,6 +75,9 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
         arrays: Mapping[str, Any]
         if kind == 'csv':
             columns, faults = _read_csv(path)
+            return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
+        if kind == 'json':
+            columns, faults = _read_json(path)
             return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
         if kind == 'npz':
             arrays = _Npz(path)
@@ -204,6 +208,43 @@ def _read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
                     fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
                     faults.setdefault(names[j], fault)
     return {name: table[:, j] for j, name in enumerate(names)}, faults
+
+
+def _read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+    """
+    Return the columns of a JSON file, and what is wrong with those that hold more than numbers.
+
+    The samples are the longest list of objects in the file, or the longest lists of numbers in it.
+    A sample that lacks a column, or has null in it, was not taken there.
+    """
+    document = json.loads(path.read_text(encoding='utf-8-sig'))
+    parts = list(document.values()) if isinstance(document, dict) else [document]
+    lists = [part for part in parts if isinstance(part, list) and part]
+    samples = [part for part in lists if all(isinstance(sample, dict) for sample in part)]
+    cells: dict[str, list[Any]]
+    if samples:
+        longest = max(samples, key=len)
+        names = dict.fromkeys(name for sample in longest for name in sample)
+        cells = {name: [sample.get(name) for sample in longest] for name in names}
+    elif isinstance(document, dict) and lists:
+        length = max(map(len, lists))
+        cells = {
+            str(name): part
+            for name, part in document.items()
+            if isinstance(part, list) and len(part) == length
+        }
+    else:
+        raise ValueError('it holds no list of samples')
+    columns: dict[str, FloatArray] = {}
+    faults: dict[str, str] = {}
+    for name, column in cells.items():
+        columns[name] = np.full(len(column), np.nan)
+        for i, cell in enumerate(column):
+            if isinstance(cell, int | float):
+                columns[name][i] = cell
+            elif cell is not None:
+                faults.setdefault(name, f'sample {i}, {name}: {cell!r} is not a number')
+    return columns, faults
 
 
 def _number(cell: str, comma: str) -> float:

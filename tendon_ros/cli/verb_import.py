@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 import sys
 
-HELP = 'turn an npz, CSV or MAT file into bags, as a mapping file says'
+HELP = 'turn an npz, CSV, MAT or JSON file into bags, as a mapping file says'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     :param parser: of this verb.
     """
-    parser.add_argument('file', metavar='FILE', help='npz, CSV or MAT file')
+    parser.add_argument('file', metavar='FILE', help='npz, CSV, MAT or JSON file')
     parser.add_argument(
         '--mapping',
         required=True,

@@ -222,7 +222,7 @@ def with_position(**fields):
         (with_position(offset=float('nan')), 'offset'),
         (with_position(column=-1), 'column'),
         (with_position(column=None), 'column'),
-        (with_position(factor=3), 'factor: unknown field; use column, offset'),
+        (with_position(factor=3), 'factor: unknown field; use bits, column, offset'),
         (changed(runs={'header': 'hdr'}), 'must hold {key}'),
         (changed(format='csv'), 'a CSV file is one run'),
         (changed(epoch='yesterday'), 'epoch'),

@@ -51,6 +51,9 @@ def sound_problem(bench, sound):
         # the motor turns by some 13 degrees: of five waves a turn it never sees half a one
         ('torque_ripple', 'motor_M', {'amplitude': 0.1, 'cycles': 5.0, 'phase': 0.0}, True),
         ('torque_ripple', 'motor_M', {'amplitude': 0.1, 'cycles': 30.0, 'phase': 0.0}, False),
+        # and friction that yields over 17 degrees of them is a spring
+        ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.3}, True),
+        ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.03}, False),
     ],
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):

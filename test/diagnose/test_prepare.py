@@ -8,6 +8,7 @@ import pytest
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.prepare import held_out, prepared
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.fixture(scope='module')
@@ -106,6 +107,29 @@ def test_a_gap_is_no_noise_once_its_cause_is_known(bench, free, scaled):
     assert level(off) > 1.5 * sound
     cause = Candidate('torque_gain', 'motor_L')
     assert level(off.heard_again(off.whole.empty.joined(cause, {'gain': 0.8}))) < 1.3 * sound
+
+
+def test_a_jump_of_some_counts_is_noise_and_rest_is_no_quieter(measured_on):
+    # slow at first, and within a tenth of a second 50 counts: who knows with what acceleration
+    name = 'actuator/pulley_body/position'
+    body = load_instrument('single_body')
+    [count] = [s.resolution for s in body.sensors if s.channel == name]
+    run = measured_on(body)
+    time = run[name].time
+    counts = 100.0 * np.clip((time - 1.0) / 4.0, 0.0, 1.0) ** 2
+    counts += 50.0 * np.clip((time - 3.0) / 0.1, 0.0, 1.0)
+    run = run.with_channels([replace(run[name], value=count * np.round(counts))])
+    ready = prepared([run], body)
+    [segment] = ready.whole.rollouts.segments
+    [[counted]] = ready.noise.counts
+
+    def about(level, when):
+        return float(np.median(level[np.abs(segment.time - when) < 0.1]))
+
+    assert about(counted, 3.0) > 1.7 * about(counted, 2.0)
+    assert about(counted, 5.8) < 0.1 * about(counted, 2.0)
+    noise = segment.measured[0].noise
+    assert about(noise, 5.8) >= 0.99 * float(np.median(counted[~segment.still[0]]))
 
 
 def test_no_fit_sees_what_is_held_out(bench, pressed, free):
