@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.enough import enough, KEPT
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
@@ -39,7 +40,6 @@ NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
 FELT = 0.8
 QUIETER = 2.0  # times less noise that call for another look
-KEPT = 4  # of so many blocks in a row one fewer is fitted
 WHOLE = 6  # recordings from which on whole ones are held out
 
 
@@ -142,12 +142,12 @@ def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
 
     :param segments: the recordings.
     :param shift: by how many blocks, or recordings, to move what is held out.
-    :return: one mask a segment: every fourth recording where there are many, else blocks.
+    :return: one mask a segment: all but the recordings that differ most where there is more than
+        fits need, every fourth recording where there are many, else blocks.
     """
     if len(segments) >= WHOLE:
-        return [
-            np.full(len(s.time), (n + shift) % KEPT == KEPT - 2) for n, s in enumerate(segments)
-        ]
+        fitted = enough(segments, shift)
+        return [np.full(len(s.time), n not in fitted) for n, s in enumerate(segments)]
     # blocks of different recordings are staggered, so that no phase of a motion is always unseen
     return [
         (np.floor(s.time / BLOCK).astype(np.int64) + n + shift) % KEPT == KEPT - 1

@@ -15,6 +15,7 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
+from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
@@ -26,7 +27,7 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
-from tendon_ros.diagnose.prepare import KEPT, Prepared, prepared
+from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone, magnitude

@@ -46,6 +46,7 @@ class Residuals:
             np.isfinite(measured) & mask
             for measured, mask in zip(rollouts.measured, used, strict=True)
         )
+        self._asked = tuple(bool(mask.any()) for mask in self._masks)
         self._noise = tuple(
             np.array([m.noise for m in s.measured]).reshape(-1, len(s.time))
             for s in self._segments
@@ -110,7 +111,7 @@ class Residuals:
         :param model: the model.
         :return: measured less predicted, shape (samples,).
         """
-        predicted = self.rollouts.predicted(self.uses(model))
+        predicted = self.rollouts.predicted(self.uses(model), self._asked)
         left = self.flat([m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)])
         for k, cause in enumerate(model.causes):
             for instant in _instants(cause, model.values(k)):

@@ -7,7 +7,6 @@ The controller is taken out: each residual then belongs to one equation, and not
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property
 
@@ -38,10 +37,9 @@ class Rollouts:
 
     :param instrument: the network; its own effects are always in force.
     :param segments: what was measured.
-    :param jobs: threads that roll out at the same time.
     """
 
-    def __init__(self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1) -> None:
+    def __init__(self, instrument: Instrument, segments: Sequence[Segment]) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
@@ -63,7 +61,6 @@ class Rollouts:
             ]
             for segment in self.segments
         )
-        self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
 
     @cached_property
     def measured(self) -> tuple[FloatArray, ...]:
@@ -83,32 +80,25 @@ class Rollouts:
                     found.setdefault(m.sensor.of, []).append(m.value[np.isfinite(m.value)])
         return {name: np.concatenate(rows) for name, rows in found.items()}
 
-    def predicted(self, uses: Sequence[Sequence[EffectUse]]) -> tuple[FloatArray, ...]:
+    def predicted(
+        self, uses: Sequence[Sequence[EffectUse]], asked: Sequence[bool] | None = None
+    ) -> tuple[FloatArray, ...]:
         """
         Predict every channel.
 
         :param uses: effects in force beside the instrument's own, for each segment.
-        :return: one array (channels, bins) a segment.
-        :raises SimulationError: where the model diverges.
+        :param asked: of each segment whether it is asked for; all where None.
+        :return: one array (channels, bins) a segment, zeros where it was not asked for; infinite
+            where the model diverges.
         """
-        return self.many([uses])[0]
-
-    def many(
-        self, models: Sequence[Sequence[Sequence[EffectUse]]]
-    ) -> list[tuple[FloatArray, ...]]:
-        """
-        Predict for several models at once.
-
-        :param models: for each, the effects by segment.
-        :return: predictions of each, as :meth:`predicted` gives them.
-        """
-        tasks = [(n, uses) for model in models for n, uses in enumerate(model)]
-        if self._pool is None:
-            flat = [self._one(task) for task in tasks]
-        else:
-            flat = list(self._pool.map(self._one, tasks))
-        width = len(self.segments)
-        return [tuple(flat[k : k + width]) for k in range(0, len(flat), width)]
+        found = []
+        for n, own in enumerate(uses):
+            if asked is None or asked[n]:
+                found.append(self._one(n, own))
+            else:
+                segment = self.segments[n]
+                found.append(np.zeros((len(segment.measured), len(segment.time))))
+        return tuple(found)
 
     def rest(self) -> dict[str, float]:
         """
@@ -147,8 +137,7 @@ class Rollouts:
         )
         return rows, numbers
 
-    def _one(self, task: tuple[int, Sequence[EffectUse]]) -> FloatArray:
-        n, uses = task
+    def _one(self, n: int, uses: Sequence[EffectUse]) -> FloatArray:
         segment = self.segments[n]
         try:
             rows, numbers = self._rolled(n, uses)

@@ -23,7 +23,9 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-BINS = 20_000  # bins of all recordings together: minutes of data are seen more coarsely
+BINS = 20_000  # bins of what is fitted together: minutes of data are seen more coarsely
+#: [s] of recordings that fits see where there are many more: whole others judge them
+FITTED = 180.0
 SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
@@ -120,7 +122,8 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     :param instrument: the network.
     :return: [s], a few samples where sampling is fast, more than one where there is much data.
     """
-    total = sum(r.end - r.start for r in recordings)
+    lengths = [r.end - r.start for r in recordings]
+    total = min(sum(lengths), max(FITTED, *lengths))
     channel = motor_channels(instrument)[0]
     sampling = max(float(np.median(np.diff(r[channel].time))) for r in recordings)
     wished = max(SHORTEST_BIN, total / BINS, sampling)

@@ -147,3 +147,20 @@ def test_of_many_recordings_whole_ones_are_held_out(bench, free):
     masks = held_out([segment] * 8)
     assert [bool(m.all()) for m in masks].count(True) == 2
     assert all(m.all() or not m.any() for m in masks)
+
+
+def test_of_more_than_fits_need_those_that_differ_most_are_fitted(bench, free):
+    [segment] = prepared([free], bench).whole.rollouts.segments
+    minute = replace(segment, time=10.0 * segment.time)
+
+    def faster(times):
+        motion = replace(minute.motion, slope=times * minute.motion.slope)
+        return replace(minute, motion=motion)
+
+    # twelve alike, three that are faster, one without most of its channels
+    segments = [faster(times) for times in (*[1.0] * 6, 3.0, *[1.0] * 6, 5.0, 8.0)]
+    bare = replace(minute, measured=minute.measured[:1])
+    fitted = [n for n, m in enumerate(held_out([*segments, bare])) if not m.any()]
+    assert len(fitted) == 3
+    assert {14, 15} < set(fitted)
+    assert fitted != [n for n, m in enumerate(held_out([*segments, bare], 2)) if not m.any()]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -46,13 +46,18 @@ def test_controller_and_sampling_do_not_matter(bench, measured_on, part, rate):
     assert misfit(prepared([run], bench).problem) < 1.5
 
 
-def test_several_models_at_once_are_the_same_as_one_by_one(sound_problem):
-    rollouts = sound_problem.rollouts
-    models = [[[EffectUse(*e)]] for e in (INJECTED['friction'], INJECTED['gain'])]
-    threaded = Rollouts(rollouts.instrument, rollouts.segments, jobs=2).many(models)
-    for model, [row] in zip(models, threaded, strict=True):
-        [alone] = rollouts.predicted(model)
-        assert np.array_equal(row, alone)
+def test_only_what_is_asked_for_is_rolled_out(bench, measured_on):
+    runs = [measured_on(bench), measured_on(bench, seed=2, name='again')]
+    whole = prepared(runs, bench).whole
+    uses = whole.uses(whole.empty)
+    first, second = whole.rollouts.predicted(uses)
+    only, left_out = whole.rollouts.predicted(uses, [True, False])
+    assert np.array_equal(only, first)
+    assert second.any()
+    assert not left_out.any()
+    used = [whole.masks[0].any(axis=0), np.zeros(second.shape[1], dtype=np.bool_)]
+    left = Problem(whole.rollouts, whole.tolerances, used).left(whole.empty)
+    assert np.array_equal(left, whole.left(whole.empty)[: len(left)])
 
 
 def test_what_is_impossible_is_infinitely_bad_and_no_crash(sound_problem):
