@@ -26,7 +26,7 @@ from tendon_ros.diagnose.session import diagnose
 
 DEVELOPMENT = 1000  # seeds below are for development
 #: weights of a few dozen causes must not run away
-RIDGE = np.array([0.0, 0.1, 0.1])
+RIDGE = np.array([0.0, 0.1, 0.1, 0.1])
 
 
 def one(seed: int, index: int) -> dict[str, Any]:

@@ -8,6 +8,7 @@ wave into gravity, one push into a push and a slip.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +17,9 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.rollout import modified
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
+from tendon_ros.model.effect_use import in_force
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
@@ -65,6 +68,31 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         if travel is not None and values['angle'] > YIELDS * travel:
             return True
     return simpler(candidate, values) is not None
+
+
+def excuses(problem: Problem, model: Model, k: int) -> bool:
+    """
+    Return whether a cause is a torque limit that most torques pass.
+
+    A fit lowers it to have ever more excused, until it means nothing.
+
+    :param problem: the data.
+    :param model: causes.
+    :param k: which of them.
+    :return: whether.
+    """
+    cause = model.causes[k]
+    if cause.effect != 'torque_saturation':
+        return False
+    instrument = problem.rollouts.instrument
+    [uses, *_] = problem.uses(model)
+    numbers = modified(replace(instrument, effects=in_force(instrument.effects, uses)))
+    names = [f'motor_{name}' for name in instrument.motor_names]
+    j = names.index(cause.place)
+    usual = problem.rollouts.usual(
+        instrument.motor_names[j], numbers['motor_gain'][j], numbers['motor_bias'][j]
+    )
+    return model.values(k)['limit'] < usual
 
 
 def _turned(problem: Problem, place: str) -> float:

@@ -31,7 +31,7 @@ class Signs:
 
     ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
     channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``form``: what their laws may leave of that.
+    causes explain; ``form``: what their laws may leave of that. ``event``: it happened once.
     """
 
     worth: float
@@ -39,6 +39,7 @@ class Signs:
     left: float
     explained: float
     form: float
+    event: bool = False
 
     @property
     def most(self) -> float:
@@ -49,22 +50,25 @@ class Signs:
     def features(self) -> FloatArray:
         """Inputs of the logistic regression."""
         left = self.left / (LEFT_NOISE + self.form)
+        worth = self.most / (LEFT_NOISE + self.left)
         return np.array(
             [
                 1.0,
-                math.log10(self.most),
                 math.log10(min(max(left, LITTLE), MUCH)),
+                math.log10(min(max(worth, LEAST_WORTH), MOST_WORTH)),
+                float(self.event),
             ]
         )
 
 
 #: misfit in units of what is usual below and beyond which it says nothing more
 LITTLE, MUCH = 0.3, 30.0
+#: times what stays that a cause is worth below and beyond which it says nothing more
+LEAST_WORTH, MOST_WORTH = 0.1, 100.0
 #: structured power that recordings without any effect may leave
 LEFT_NOISE = 0.05
-#: weights of the features, from 70 cases (109 causes) of development seeds 84 to 95; then twice as
-#: steep, as 98 causes of 69 cases asked for when the search had become surer
-WEIGHTS = np.array([-0.04, 1.82, -4.5])
+#: weights of the features, from 178 causes of 99 cases that are used up for anything else
+WEIGHTS = np.array([-0.21, -1.7, 1.48, -1.48])
 
 
 def probability(signs: Signs) -> float:
@@ -113,12 +117,12 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     worth, in_one = gains(problem, without, final)
     explained = (found.start.cost - final.cost) / samples
     form = form_power(problem, found.start, final)
-    return Signs(max(worth, 1e-9), in_one, left, explained, form)
+    gone = set(final.model.causes) - set(without.model.causes)
+    event = any(cause.instants for cause in gone)
+    return Signs(max(worth, 1e-9), in_one, left, explained, form, event)
 
 
-#: part of what stays below which a cause drowns in it
-DROWNED = 0.3
-#: probability that a cause has at most which foretells nothing, or drowns in what others leave
+#: probability that a cause has at most which foretells nothing, or may be what laws get wrong once
 IDLE = 0.3
 
 
@@ -160,11 +164,9 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     :return: 0 to 1.
     """
     likely = probability(signs)
-    # what explains little of what stays, and less than laws may leave, may be anything
-    drowned = signs.most < min(DROWNED * signs.left, signs.form)
-    if found.final.model.causes[k].instants:  # of all times, one fits what a law gets wrong
-        drowned = signs.most < TIMES_EVENT * signs.form
-    return likely if foretells(ready, found, k) and not drowned else min(IDLE, likely)
+    # of all times, one fits what a law gets wrong
+    luck = signs.event and signs.most < TIMES_EVENT * signs.form
+    return likely if foretells(ready, found, k) and not luck else min(IDLE, likely)
 
 
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, degenerate, least_late, simpler
+from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late, simpler
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.identify.candidate import Candidate
@@ -138,6 +138,7 @@ class Steps:
             for r in self.pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
+            and not excuses(self.problem, r.fit.model, -1)
         ]
         return sorted(found, key=judged_cost)
 
@@ -192,6 +193,9 @@ class Steps:
         taken = {(c.effect, c.place) for c in model.causes}
         for k in reversed(range(len(model.causes))):
             cause, values = model.causes[k], model.values(k)
+            if excuses(self.problem, model, k):
+                model = model.without(k)
+                continue
             if not degenerate(self.problem, cause, values):
                 continue
             other = simpler(cause, values)

@@ -6,7 +6,7 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -27,7 +27,7 @@ from tendon_ros.model.simulation import predict
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-USUAL = 0.6  # part of a motor's torques that no unknown limit cuts off
+USUAL = 0.5  # part of a motor's torques that no unknown limit cuts off
 TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
 
 
@@ -79,6 +79,18 @@ class Rollouts:
                 if m.sensor.kind == 'motor_torque':
                     found.setdefault(m.sensor.of, []).append(m.value[np.isfinite(m.value)])
         return {name: np.concatenate(rows) for name, rows in found.items()}
+
+    def usual(self, motor: str, gain: float, bias: float) -> float:
+        """
+        Return the torque that a motor usually keeps below.
+
+        :param motor: its name.
+        :param gain: of its torque by the reported one.
+        :param bias: what is added to that [N m].
+        :return: [N m]; 0 where it reported nothing.
+        """
+        reported = self._torques.get(motor, np.zeros(0))
+        return float(np.quantile(np.abs(gain * reported + bias), USUAL)) if reported.size else 0.0
 
     def predicted(
         self, uses: Sequence[Sequence[EffectUse]], asked: Sequence[bool] | None = None
@@ -145,7 +157,7 @@ class Rollouts:
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
         found = _as_held(rows, numbers, segment, found)
-        reported = _as_reported(rows.instrument, numbers, segment, found, self._torques)
+        reported = _as_reported(rows.instrument, numbers, segment, found, self.usual)
         return _zeroed(segment, reported)
 
 
@@ -251,7 +263,7 @@ def _as_reported(
     numbers: Numbers,
     segment: Segment,
     found: FloatArray,
-    torques: Mapping[str, FloatArray],
+    usual: Callable[[str, float, float], float],
 ) -> FloatArray:
     """
     Return the predictions with the torque limits of the motors seen as the recording sees them.
@@ -270,8 +282,7 @@ def _as_reported(
             continue
         # a limit that most torques passed is none: it would excuse whatever the model asks
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-        applied = np.abs(gain * torques[measured.sensor.of] + bias)
-        limit = max(limit, float(np.quantile(applied, USUAL)) if applied.size else 0.0)
+        limit = max(limit, usual(measured.sensor.of, gain, bias))
         asked = gain * found[row] + bias
         reported = measured.level
         given = np.clip(gain * reported + bias, -limit, limit)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tendon_ros.diagnose.bent import at_once, degenerate, least_late, simpler
+from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late, simpler
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -58,6 +58,15 @@ def sound_problem(bench, sound):
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+@pytest.mark.parametrize(('limit', 'excused'), [(3.0, False), (0.02, True)])
+def test_a_limit_that_most_torques_pass_is_none(sound_problem, limit, excused):
+    model = sound_problem.empty
+    model = model.joined(Candidate('torque_gain', 'motor_M'), {'gain': 0.9})
+    model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit})
+    assert excuses(sound_problem, model, 1) is excused
+    assert not excuses(sound_problem, model, 0)
 
 
 def test_creep_that_is_over_at_once_is_a_softer_cable():
