@@ -198,9 +198,8 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
             if gain != 1.0 or offset != 0.0 or late != 0.0:
                 value, slope = value.copy(), slope.copy()
                 if late != 0.0:
-                    grid = motion.step * np.arange(value.shape[1])
-                    value[row] = np.interp(grid + late, grid, value[row])
-                    slope[row] = np.interp(grid + late, grid, slope[row])
+                    value[row] = _earlier(value[row], late / motion.step)
+                    slope[row] = _earlier(slope[row], late / motion.step)
                 value[row] = (value[row] - offset) / gain
                 slope[row] = slope[row] / gain
             break
@@ -214,6 +213,24 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
             value[row] = np.clip(given, -limit, limit)
             slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
     return Signals(value, slope, start, motion.step)
+
+
+def _earlier(value: FloatArray, steps: float) -> FloatArray:
+    """
+    Return what is sampled evenly, by a part of a step or by several earlier.
+
+    A shift of phases leaves the noise of the motion as large as it is. Interpolation would take
+    some of it away, and half a bin of delay would explain that in any recording.
+    """
+    n = len(value)
+    ends = value[0] + (value[-1] - value[0]) * np.linspace(0.0, 1.0, n)
+    rest = value - ends
+    # odd about both ends: what repeats itself has no jumps
+    waves = np.fft.rfft(np.concatenate([rest, -rest[-2:0:-1]]))
+    waves *= np.exp(2j * np.pi * np.fft.rfftfreq(2 * n - 2) * steps)
+    slope = (value[-1] - value[0]) / (n - 1)
+    found: FloatArray = np.fft.irfft(waves, 2 * n - 2)[:n] + ends + steps * slope
+    return found
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.rollout import modified, true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -131,3 +132,20 @@ def test_a_limit_that_a_bias_passes_all_along_excuses_nothing(stopping, measured
         np.mean((value - problem.rollouts.predicted([own])[0][0]) ** 2) for own in ([], uses)
     )
     assert excused > 0.3 * without
+
+
+@pytest.mark.parametrize('late', [0.5, 1.0, 2.3])
+def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
+    body, problem_of = stopping
+    problem, _ = problem_of(measured_on(body))
+    [segment] = problem.rollouts.segments
+    noise = np.random.default_rng(3).normal(0.0, 1e-3, segment.motion.value.shape)
+    noisy = replace(segment, motion=replace(segment.motion, value=segment.motion.value + noise))
+    use = EffectUse('sensor_delay', 'encoder_body', {'time': late * segment.period})
+    rig = replace(body, effects=(use,))
+    moved, plain = (true_motion(rig, modified(rig), s).value[0] for s in (noisy, segment))
+    middle = slice(50, -50)
+    assert np.std((moved - plain)[middle]) == pytest.approx(1e-3, rel=0.1)
+    grid = segment.period * np.arange(len(plain))
+    expected = np.interp(grid + late * segment.period, grid, segment.motion.value[0])
+    assert plain[middle] == pytest.approx(expected[middle], abs=1e-3)
