@@ -24,6 +24,9 @@ FloatArray = NDArray[np.float64]
 CLUSTER = 1.0  # [s] of samples that count as one piece of evidence
 #: relative error of a size that the form of any law leaves, one deviation
 SIZE_FORM = 0.02
+#: times as wide as all that: of 171 parameters of published cases that were used up, 87 % lay
+#: within, and 92 % within so much
+WIDER = 1.3
 SMALL = 1e-5  # step of a derivative, on an axis
 
 
@@ -84,7 +87,7 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     :return: for each cause, low and high by parameter, in its unit.
     """
     spread = Spread(problem, fit)
-    reach = float(student.ppf(0.975, 20))
+    reach = WIDER * float(student.ppf(0.975, 20))
     found = []
     at = 0
     for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
