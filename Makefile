@@ -32,7 +32,7 @@ lint: $(READY)  ## style, types and import walls
 	@echo '== import-linter'; .venv/bin/lint-imports --no-logo
 
 test: lint  ## lint, then the tests; ARGS='-k bags' goes to pytest
-	@echo '== pytest'; $(PY) -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
+	@echo '== pytest'; $(PY) -m pytest -n auto --maxprocesses 4 --dist worksteal $(ARGS)
 
 demo: $(READY)  ## the paper's experiment, live, into out/demo
 	@.venv/bin/tendon demo --out out/demo $(if $(GRASPER),--grasper $(GRASPER))

@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 
 PIECE = 0.12  # [s] over which an unknown cause is taken as constant
 ALIKE = 0.75  # part of the best place's gain from which on another may be the one
+TIED = 0.9  # part of the best odds from which on a law that explains more decides
 LEVELS = 8  # of what a place feels
 
 
@@ -83,13 +84,16 @@ class Places:
             least = ALIKE * max(gains.values())
             if least <= 0.0:
                 break
-            # what a law of its own leaves, against what even any size at any time leaves
-            odds = {
-                place: self._lawful(place, left, moved) / float(t @ t)
-                for place, (t, _) in trials.items()
-                if gains[place] >= least
+            # what a law of its own explains, against what even any size at any time leaves
+            lawful = {
+                place: self._lawful(place, left, moved)
+                for place, gain in gains.items()
+                if gain >= least
             }
-            best = max(odds, key=lambda place: odds[place])
+            odds = {place: x / float(trials[place][0] @ trials[place][0])
+                    for place, x in lawful.items()}  # fmt: skip
+            tied = [place for place in odds if odds[place] >= TIED * max(odds.values())]
+            best = max(tied, key=lambda place: lawful[place])
             kept, moved = trials[best]
             found.append((best, left**2 - kept**2))
             left = kept

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late, simpler
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.worth import needed, worthwhile
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -70,7 +71,7 @@ class Steps:
     ) -> None:
         self.problem = problem
         self.candidates = tuple(candidates)
-        self._allowed = {(c.effect, c.place) for c in candidates}
+        self._allowed = {(c.effect, c.place): c for c in candidates}
         self.report = report
         self.pool = ThreadPoolExecutor(jobs)
 
@@ -204,7 +205,7 @@ class Steps:
                 continue
             name = (other[0].effect, other[0].place)
             if name in self._allowed and name not in taken:
-                model = model.joined(*other)
+                model = model.joined(self._allowed[name], _instead(self._allowed[name], other[1]))
         return state if model is state.model else self.settled(model)
 
     def _parted(self, state: Fit) -> Fit:
@@ -220,3 +221,11 @@ class Steps:
         if not gone:
             return state
         return self.settled(model.without(*gone), self.problem.slopes(state))
+
+
+def _instead(candidate: Candidate, more: Mapping[str, float]) -> dict[str, float]:
+    """Return what stands instead of the file's effect where more of it was found beside it."""
+    given = dict(candidate.given)
+    neutral = find(candidate.effect).neutral
+    return {name: given.get(name, neutral[name]) + size - neutral[name]
+            for name, size in more.items()}  # fmt: skip
