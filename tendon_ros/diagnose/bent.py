@@ -128,7 +128,7 @@ def simpler(
     if found is None:
         return None
     name, parameters = found
-    return Candidate(name, candidate.place, magnitude=candidate.magnitude), parameters
+    return Candidate(name, candidate.place), parameters
 
 
 def least_late(problem: Problem, model: Model) -> int | None:

@@ -204,8 +204,9 @@ class Steps:
             if other is None:
                 continue
             name = (other[0].effect, other[0].place)
-            if name in self._allowed and name not in taken:
-                model = model.joined(self._allowed[name], _instead(self._allowed[name], other[1]))
+            known = self._allowed.get(name)
+            if known is not None and name not in taken:
+                model = model.joined(known, _instead(known, other[1]))
         return state if model is state.model else self.settled(model)
 
     def _parted(self, state: Fit) -> Fit:

@@ -6,17 +6,17 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import find_objects, label
 
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.effects import find
 from tendon_ros.identify.segment import Segment
+from tendon_ros.identify.untold import as_held, as_reported
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
@@ -156,8 +156,8 @@ class Rollouts:
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), len(segment.time)), np.inf)
         found = rows.reading[:, self._columns[n]].T
-        found = _as_held(rows, numbers, segment, found)
-        reported = _as_reported(rows.instrument, numbers, segment, found, self.usual)
+        found = as_held(rows, numbers, segment, found)
+        reported = as_reported(rows.instrument, numbers, segment, found, self.usual)
         return _zeroed(segment, reported)
 
 
@@ -238,70 +238,4 @@ def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:
     for row, measured in zip(found, segment.measured, strict=True):
         if not measured.sensor.zeroed:
             row += np.nanmean(measured.value - row)
-    return found
-
-
-def _as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -> FloatArray:
-    """
-    Return the predictions with what dry friction holds as the recording has it.
-
-    While a motor rests, dry friction takes any torque up to its limit, and no motion tells which:
-    there the measured torque stands for the prediction, as far as friction reaches and to within
-    a deviation of noise, so that holding still is no better than having nothing to hold.
-    """
-    sensors = [s.name for s in rows.instrument.sensors]
-    for n, j, still in segment.at_rest(rows.instrument):
-        row, measured = found[n], segment.measured[n]
-        without_sign = numbers['sensor_rectified'][sensors.index(measured.sensor.name)]
-        if without_sign or not rows.dry_limit[:, j].any():
-            continue
-        gain = numbers['motor_gain'][j]
-        limit = _either_way(rows.dry_limit[:, j], still)
-        used = rows.dry_friction[:, j]
-        held = np.clip(measured.value - row, (used - limit) / gain, (used + limit) / gain)
-        held = np.sign(held) * np.maximum(0.0, np.abs(held) - measured.noise)
-        row += np.where(still & np.isfinite(held), held, 0.0)
-    return found
-
-
-def _either_way(limit: FloatArray, still: BoolArray) -> FloatArray:
-    """Return the largest friction of each rest: before and after it may differ, by direction."""
-    found = limit.copy()
-    runs, _ = label(still)
-    for found_run in find_objects(runs):
-        assert found_run is not None
-        [run] = found_run
-        found[run] = limit[max(0, run.start - 1) : run.stop + 1].max()
-    return found
-
-
-def _as_reported(
-    instrument: Instrument,
-    numbers: Numbers,
-    segment: Segment,
-    found: FloatArray,
-    usual: Callable[[str, float, float], float],
-) -> FloatArray:
-    """
-    Return the predictions with the torque limits of the motors seen as the recording sees them.
-
-    A motor whose torque is cut off reports a torque that no motion tells; there the measured
-    torque stands for the prediction, less what the motion asks beyond the limit. What is cut off
-    is the torque without its noise: a limit that took the noise away would always explain some.
-    """
-    names = list(instrument.motor_names)
-    for row, measured in enumerate(segment.measured):
-        if measured.sensor.kind != 'motor_torque':
-            continue
-        j = names.index(measured.sensor.of)
-        limit = numbers['motor_limit'][j]
-        if limit >= 1e3:
-            continue
-        # a limit that most torques passed is none: it would excuse whatever the model asks
-        gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-        limit = max(limit, usual(measured.sensor.of, gain, bias))
-        asked = gain * found[row] + bias
-        reported = measured.level
-        given = np.clip(gain * reported + bias, -limit, limit)
-        found[row] = reported + (asked - given) / gain
     return found

@@ -1,0 +1,100 @@
+"""
+Torques that no motion tells: where dry friction holds a motor, or a limit cuts its torque off.
+
+There the measured torque stands for the prediction, as far as friction or limit reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import find_objects, label
+
+from tendon_ros.identify.segment import Segment
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.numbers import Numbers
+from tendon_ros.model.runner import Rows
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+def as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -> FloatArray:
+    """
+    Return the predictions with what dry friction holds as the recording has it.
+
+    While a motor rests, dry friction takes any torque up to its limit, and no motion tells which:
+    there the measured torque stands for the prediction, as far as friction reaches and to within
+    a deviation of noise, so that holding still is no better than having nothing to hold.
+
+    :param rows: what the model does along the segment.
+    :param numbers: after its effects.
+    :param segment: what was measured.
+    :param found: what the model predicts, shape (channels, bins); it is changed.
+    :return: the same array.
+    """
+    sensors = [s.name for s in rows.instrument.sensors]
+    for n, j, still in segment.at_rest(rows.instrument):
+        row, measured = found[n], segment.measured[n]
+        without_sign = numbers['sensor_rectified'][sensors.index(measured.sensor.name)]
+        if without_sign or not rows.dry_limit[:, j].any():
+            continue
+        gain = numbers['motor_gain'][j]
+        limit = _either_way(rows.dry_limit[:, j], still)
+        used = rows.dry_friction[:, j]
+        held = np.clip(measured.value - row, (used - limit) / gain, (used + limit) / gain)
+        held = np.sign(held) * np.maximum(0.0, np.abs(held) - measured.noise)
+        row += np.where(still & np.isfinite(held), held, 0.0)
+    return found
+
+
+def _either_way(limit: FloatArray, still: BoolArray) -> FloatArray:
+    """Return the largest friction of each rest: before and after it may differ, by direction."""
+    found = limit.copy()
+    runs, _ = label(still)
+    for found_run in find_objects(runs):
+        assert found_run is not None
+        [run] = found_run
+        found[run] = limit[max(0, run.start - 1) : run.stop + 1].max()
+    return found
+
+
+def as_reported(
+    instrument: Instrument,
+    numbers: Numbers,
+    segment: Segment,
+    found: FloatArray,
+    usual: Callable[[str, float, float], float],
+) -> FloatArray:
+    """
+    Return the predictions with the torque limits of the motors seen as the recording sees them.
+
+    A motor whose torque is cut off reports a torque that no motion tells; there the measured
+    torque stands for the prediction, less what the motion asks beyond the limit. What is cut off
+    is the torque without its noise: a limit that took the noise away would always explain some.
+
+    :param instrument: the network.
+    :param numbers: after its effects.
+    :param segment: what was measured.
+    :param found: what the model predicts, shape (channels, bins); it is changed.
+    :param usual: torque that a motor, by name, gain and bias, usually keeps below [N m].
+    :return: the same array.
+    """
+    names = list(instrument.motor_names)
+    for row, measured in enumerate(segment.measured):
+        if measured.sensor.kind != 'motor_torque':
+            continue
+        j = names.index(measured.sensor.of)
+        limit = numbers['motor_limit'][j]
+        if limit >= 1e3:
+            continue
+        # a limit that most torques passed is none: it would excuse whatever the model asks
+        gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
+        limit = max(limit, usual(measured.sensor.of, gain, bias))
+        asked = gain * found[row] + bias
+        reported = measured.level
+        given = np.clip(gain * reported + bias, -limit, limit)
+        found[row] = reported + (asked - given) / gain
+    return found
