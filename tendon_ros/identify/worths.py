@@ -15,8 +15,11 @@ def worths(problem: Problem, fit: Fit) -> list[float]:
 
     :param problem: the fitted bins.
     :param fit: the fit.
-    :return: one for each cause; infinite for one whose size is no number of its own.
+    :return: one for each cause; infinite for one whose size is no number of its own, and for all
+        of a fit that could not be computed.
     """
+    if not math.isfinite(fit.cost):
+        return [math.inf] * len(fit.model.causes)
     slope = fit.slope * problem.free(fit)
     products = slope.T @ slope + np.diag(problem.prior(fit.model) + 1e-9)
     x = problem.pack(fit.model)
