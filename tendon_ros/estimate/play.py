@@ -39,6 +39,15 @@ class Play:
             if stiff and stiff[0] > TWISTS[0]:
                 self._ends.append((row, float(stiff[0])))
 
+    def inside(self, angle: FloatArray) -> bool:
+        """
+        Return whether any of the couplings is within its play.
+
+        :param angle: [rad], shape (pulleys,).
+        :return: whether.
+        """
+        return any(abs(float(row @ angle)) < end for row, end in self._ends)
+
     def sides(self, angle: FloatArray) -> list[FloatArray]:
         """
         Return the angles with each coupling that has play wound up one way, and the other.

@@ -6,9 +6,9 @@ and the operating force. The torques on every pulley must balance (the paper's (
 inertia), and the measured torques must be met as well as their noise lets them: weighted least
 squares by Gauss-Newton, whose covariance is the stated uncertainty.
 
-While dry friction turns round, a hair of an angle decides how much of it acts, and torques tell
-little of the force. So the friction of each pulley is as uncertain as the angles make it, and the
-force is not expected to change faster than it can be told at the best of times.
+Where a pulley rests or turns round torques tell little of the force, since its friction is as
+uncertain as the angles make it. So the force is not expected to change faster than it can be told
+at the best of times.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from tendon_ros.estimate.channels import (
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
+from tendon_ros.estimate.rubbing import Rubbing
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
@@ -95,14 +96,17 @@ class StaticBalanceObserver(Observer):
                 f'{instrument.name}: this method needs at least one angle and one torque; the '
                 f'channels chosen are {listed(channels)}'
             )
-        fixed = {i for _, i in self._angles}
-        self._free = [i for i in range(len(instrument.pulleys)) if i not in fixed]
+        self._fixed = [i for _, i in self._angles]
+        self._free = [i for i in range(len(instrument.pulleys)) if i not in self._fixed]
         self._sigma_angle = np.array([doubt(known[name]) for name, _ in self._angles])
-        self._unsure_angle = float(self._sigma_angle.max())
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
         self._least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
         self._rigid = Rigid(instrument, self._free)
+        unsure = np.zeros(len(instrument.pulleys))
+        unsure[self._fixed] = self._sigma_angle
+        unsure[self._free] = np.abs(self._rigid.free(unsure))
+        self._friction = Rubbing(self._statics, unsure)
         self._play = Play(instrument, self._free, self._statics)
         self._reset()
 
@@ -128,7 +132,6 @@ class StaticBalanceObserver(Observer):
         rows = [row.name for row in one.links]
         count = len(self._balanced) + len(self._torques)
         self._routing = one.routing()
-        self._fixed = [i for _, i in self._angles]
         self._on_pulleys = np.zeros((count, len(one.pulleys)))
         self._on_loops = np.zeros((count, len(rows)))
         self._on_pulleys[np.arange(len(self._balanced)), self._balanced] = 1.0
@@ -154,6 +157,7 @@ class StaticBalanceObserver(Observer):
     def _reset(self) -> None:
         self._statics.reset()
         self._angle = np.zeros(len(self._instrument.pulleys))
+        self._friction.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._force = 0.0
         self._spread = math.inf  # of the last force
@@ -186,8 +190,9 @@ class StaticBalanceObserver(Observer):
             rubbed = self._statics.at(angle, self._velocity).friction
             self._statics.carry(self._angle, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
-            self._doubt_friction(angle - self._angle, now, now - rubbed)
-            if np.any(self._rubbing > BALANCE):  # it has turned round on the way: once more
+            unsure = self._friction.doubt(self._angle, angle, gap, now - rubbed, now)
+            self._rubbing = self._on_pulleys @ unsure
+            if np.any(self._rubbing > BALANCE):  # seen only now: once more
                 force, covariance = self._solve(angle, measurement)
         self._refused = self._refused + 1 if self._strained > REFUSED else 0
         if self._refused > IN_A_ROW:
@@ -211,24 +216,21 @@ class StaticBalanceObserver(Observer):
         }
         return Estimate(measurement.stamp_ns, values)
 
-    def _doubt_friction(self, moved: FloatArray, friction: FloatArray, change: FloatArray) -> None:
-        """Set the uncertainty of each equation [N m] where friction is turning round."""
-        span = np.maximum(np.abs(moved), 1e-9)
-        unsure = np.abs(change) * np.minimum(self._unsure_angle / span, 1.0)
-        self._rubbing = self._on_pulleys @ np.minimum(unsure, 2.0 * np.abs(friction))
-
     def _moved(self, angle: FloatArray) -> FloatArray:
         """Return the smoothed velocities [rad/s] if the angles now are these."""
         return np.asarray(self._drift + self._pace * (angle - self._angle))
 
     def _solve(self, angle: FloatArray, measurement: Measurement) -> tuple[float, FloatArray]:
-        """Find free angles (in place) and force; return the force and the covariance of both."""
+        """Find free angles (in place) and force; return the force and both's covariance."""
         begun = angle.copy()
         cost, force, rows, by_fixed = self._searched(angle, begun, measurement)
-        if cost > DOUBTFUL**2 * len(self._weight):
+        within = self._play.inside(
+            angle
+        )  # where torques change with no angle: at its edge they do
+        if within or cost > DOUBTFUL**2 * len(self._weight):
             for across in self._play.sides(angle):
                 again = self._searched(across, begun, measurement)
-                if again[0] < cost:
+                if again[0] < cost + (PROMISE if within else 0.0):
                     cost, force, rows, by_fixed = again
                     angle[:] = across
         orthogonal, upper = np.linalg.qr(rows)

@@ -263,6 +263,18 @@ class Runner:
             self._state[i] = float(angle[own])
             self._state[n + i] = float(velocity[own])
 
+    def kept(self) -> tuple[Any, ...]:
+        """Return where everything is, for :meth:`back`."""
+        return tuple(np.array(one) for one in (self._state, self._carried, self._modes))
+
+    def back(self, kept: tuple[Any, ...]) -> None:
+        """
+        Put everything back to where it was.
+
+        :param kept: from :meth:`kept`.
+        """
+        self._state, self._carried, self._modes = (self.engine.array(one) for one in kept)
+
     @property
     def memories(self) -> int:
         """How many auxiliary states friction, cables and controllers have."""

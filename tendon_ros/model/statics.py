@@ -21,6 +21,9 @@ from tendon_ros.model.structure import Structure
 
 FloatArray = NDArray[np.float64]
 
+#: [s] that a step aside takes: cables have no time to creep
+MOMENT = 1e-3
+
 
 @dataclass(frozen=True)
 class Balance:
@@ -151,6 +154,25 @@ class Statics:
         if self._runner.memories:
             now = self._runner.time
             self._runner.glide(now + gap, Signals.straight(now, gap, before, after))
+
+    def friction_beside(self, angle: FloatArray, shift: FloatArray) -> FloatArray:
+        """
+        Return by how much dry friction would change, had the pulleys gone a little further.
+
+        :param angle: [rad], shape (n,), up to which the memories were carried.
+        :param shift: how much further, one way and the other [rad], shape (n,).
+        :return: the larger change of each pulley's friction [N m], shape (n,).
+        """
+        still = np.zeros(len(angle))
+        here = self.at(angle, still).friction
+        change = still
+        if self._runner.memories:
+            kept = self._runner.kept()
+            for further in (angle + shift, angle - shift):
+                self.carry(angle, further, MOMENT)
+                change = np.maximum(change, np.abs(self.at(further, still).friction - here))
+                self._runner.back(kept)
+        return change
 
     def reset(self, pose: Mapping[str, float] | None = None) -> None:
         """

@@ -169,6 +169,56 @@ def test_a_reversal_is_not_taken_for_force(rms):
     assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.9
 
 
+@pytest.mark.parametrize(('true', 'known'), [(3e-3, 6e-3), (6e-3, 3e-3)])
+def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
+    """While a pulley rests its friction may go either way within what its angle is unsure by."""
+    grasper = load_instrument('davinci_grasper')
+
+    def rubbing(angle):
+        uses = (
+            EffectUse('tension_friction', 'pulley_spindle', {'coefficient': 0.5}),
+            EffectUse('presliding_friction', 'pulley_spindle', {'angle': angle, 'torque': 0.0}),
+        )
+        return replace(grasper, effects=uses)
+
+    motion = {'amplitude': '55 deg', 'duration': '10 s', 'frequency': '0.3 Hz'}
+    recording = simulate(
+        rubbing(true), chosen('sine', grasper.motor_names, motion), rate=100.0, seed=3
+    )
+    channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
+    doubting = replace(
+        rubbing(known),
+        sensors=tuple(
+            replace(s, misfit=3e-3) if s.channel in channels else s for s in grasper.sensors
+        ),
+    )
+    estimated = estimate_recording(recording, build(doubting, 'static_balance', channels=channels))
+    estimate = estimated['estimate/torque']
+    truth = recording['load_cell/torque'].at(estimate.time)
+    off = np.abs(estimate.value - truth)
+    assert off.max() < 0.5 * truth.max()
+    assert rms(off) < 0.08 * truth.max()
+    assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.95
+
+
+def test_a_small_torque_is_met_at_the_edge_of_a_play():
+    """A torque that may as well be none by its doubt is no reason to stay within the play."""
+    tool = load_instrument('davinci_grasper')
+    rig = replace(
+        tool,
+        effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),),
+        sensors=tuple(replace(s, misfit=8e-3 * (s.kind == 'loop_torque')) for s in tool.sensors),
+    )
+    motion = {'duration': '6 s', 'amplitude': '40 deg'}
+    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=500.0)
+    channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
+    assert 0.01 < run['load_cell/torque'].value.max() < 0.02
+    found = estimate_recording(run, build(rig, 'static_balance', channels=channels))
+    estimate = found['estimate/torque']
+    off = estimate.value - run['load_cell/torque'].at(estimate.time)
+    assert np.abs(off).mean() < 0.001
+
+
 def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
     """Inside the play the torque says nothing of the motor's angle, or of its side."""
     tool = load_instrument('davinci_grasper')

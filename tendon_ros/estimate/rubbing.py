@@ -1,0 +1,65 @@
+"""
+How uncertain dry friction is, for a balance of torques.
+
+Where a pulley rests or turns round, a hair of an angle decides how much of its friction acts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.model.statics import Statics
+
+FloatArray = NDArray[np.float64]
+
+#: a pulley that has not gone further in this time than its angle is uncertain may as well have
+#: turned round [s]
+TURNED = 0.05
+#: the shortest way and uncertainty that divide others [rad]
+LEAST = 1e-9
+
+
+class Rubbing:
+    """
+    The friction of pulleys whose angles are known so well.
+
+    :param statics: that carries the memories of friction.
+    :param unsure: by how much each angle is uncertain [rad], shape (pulleys,).
+    """
+
+    def __init__(self, statics: Statics, unsure: FloatArray) -> None:
+        self._statics = statics
+        self._unsure = unsure
+        self._late: FloatArray | None = None
+
+    def reset(self) -> None:
+        """Forget where the pulleys have come from."""
+        self._late = None
+
+    def doubt(
+        self,
+        before: FloatArray,
+        angle: FloatArray,
+        gap: float,
+        change: FloatArray,
+        friction: FloatArray,
+    ) -> FloatArray:
+        """
+        Return how uncertain each pulley's friction is; to be asked at every measurement.
+
+        :param before: angles at the last measurement [rad], shape (pulleys,).
+        :param angle: the same now, up to which the memories were carried.
+        :param gap: the time between [s].
+        :param change: of friction on the way [N m], shape (pulleys,).
+        :param friction: that acts now [N m], shape (pulleys,).
+        :return: one deviation [N m], shape (pulleys,).
+        """
+        span = np.maximum(np.abs(angle - before), LEAST)
+        part = np.minimum(float(self._unsure.max()) / span, 1.0)
+        turning = np.minimum(np.abs(change) * part, 2.0 * np.abs(friction))
+        late = before if self._late is None else self._late
+        self._late = late + (angle - late) * gap / (gap + TURNED)
+        gone = (angle - self._late) / np.maximum(self._unsure, LEAST)
+        resting = self._statics.friction_beside(angle, self._unsure) * np.exp(-0.5 * gone**2)
+        return np.asarray(np.maximum(turning, resting))
