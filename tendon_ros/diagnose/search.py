@@ -21,12 +21,13 @@ from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen, Seen
 from tendon_ros.identify.subset import Member, Subsets
 
-MOST = 5  # causes
-ROUNDS = 4  # of looking for more causes
+MOST = 8  # causes
+ROUNDS = 6  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
 GAINED = 0.8
@@ -46,6 +47,7 @@ class Search:
     :param jobs: threads.
     :param report: called with what is being done and the part that is done.
     :param memory: of the steps of an interrupted search.
+    :param begun: what an earlier search found in the same recordings.
     """
 
     def __init__(
@@ -55,11 +57,13 @@ class Search:
         jobs: int = 2,
         report: Report = lambda _what, _done: None,
         memory: Memory | None = None,
+        begun: Model | None = None,
     ) -> None:
         self.problem = problem
         self._steps = Steps(problem, candidates, jobs, report)
         self._challenge = Challenge(self._steps)
         self._memory = memory
+        self._begun = begun
 
     def run(self) -> Found:
         """
@@ -87,6 +91,11 @@ class Search:
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)
             found.states.append(state)
+        if self._begun is not None and self._begun.causes:
+            earlier = self._steps.pruned(found.start, self._steps.settled(self._begun))
+            if self._believed(found, found.start, earlier):
+                state = earlier
+                found.states.append(state)
         turn = len(found.states) - 1
         challenged: Fit | None = None
         while True:

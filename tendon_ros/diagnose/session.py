@@ -153,15 +153,17 @@ def _searched(
     report: Report,
     memory: Memory | None,
 ) -> tuple[Prepared, Found]:
-    """Search, and again where noise, or blocks that were held out, held something to be found."""
+    """Search, and on where noise, or blocks that were held out, held something to be found."""
     found = Search(ready.problem, candidates, jobs, report, memory).run()
     again = ready.heard_again(found.final.model)
     if again.quieter(ready):
         report('looking again: what was taken for noise was not', 0.0)
         ready = again
-        found = Search(ready.problem, candidates, jobs, report).run()
+        begun = found.final.model
+        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
     if surprising(ready, found):
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
-        found = Search(ready.problem, candidates, jobs, report).run()
+        begun = found.final.model
+        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
     return ready, found
