@@ -4,7 +4,7 @@ Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.gr
 Trains on six runs of three frequencies and two loads, or takes the instrument file of an earlier
 diagnosis, and says of the runs that it has not seen: the torque of the spindle predicted from the
 jaw's torque and the motion; the jaw's torque and angle estimated from the spindle, and from the
-motor alone. Standard output is a table, a picture goes to ``--figure``.
+motor alone, without and with knowing how fast the load changes. Standard output is a table, a picture goes to ``--figure``.
 """
 
 from __future__ import annotations
@@ -50,13 +50,21 @@ def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, Float
     return segment.measured[at].value[kept], rows[at][kept]
 
 
+def wandered(runs: Sequence[Recording]) -> float:
+    """Return by how much the load changes in a second [N m]: its deviation, over all runs."""
+    parts = []
+    for run in runs:
+        time = np.arange(run.start + SETTLING, run[LOAD].time[-1] - 1.0, 1.0 / RATE)
+        parts.append(run[LOAD].at(time + 1.0) - run[LOAD].at(time))
+    return rms(parts)
+
+
 def estimated(
-    run: Recording, instrument: Instrument, channels: Sequence[str]
+    run: Recording, instrument: Instrument, channels: Sequence[str], wander: float | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return errors of jaw torque [N m] and angle [rad], and errors by the stated deviation."""
-    out = estimate_recording(
-        run, build(instrument, 'static_balance', channels=channels), rate=RATE
-    )
+    observer = build(instrument, 'static_balance', channels=channels, wander=wander)
+    out = estimate_recording(run, observer, rate=RATE)
     time = out['estimate/torque'].time
     late = time > run.start + SETTLING
     torque = out['estimate/torque'].value - run[LOAD].at(time)
@@ -103,13 +111,21 @@ def main() -> None:
     for name, instrument in (('file', plain), ('diagnosed', found)):
         off = [a - b for a, b in (predicted(run, instrument) for run in held)]
         print(f'{name:10} spindle torque from jaw torque and motion {1e3 * rms(off):6.2f} mN m')
-    for name, channels in (('spindle', SPINDLE), ('motor', MOTOR)):
-        rows = [estimated(run, found, channels) for run in held]
+    wander = wandered([runs[key] for key in TRAINED])
+    print(f'the load wanders by {1e3 * wander:.0f} mN m in a second, in the runs of the diagnosis')
+    for name, channels, known in (
+        ('spindle', SPINDLE, None),
+        ('motor', MOTOR, None),
+        ('spindle', SPINDLE, wander),
+        ('motor', MOTOR, wander),
+    ):
+        rows = [estimated(run, found, channels, known) for run in held]
         inside = np.abs(np.concatenate([r[2] for r in rows])) < 1.96
         angle = [r[1] for r in rows]
         moving = [a - a.mean() for a in angle]  # the encoders' zeros jump between recordings
+        told = f'{name} --wander' if known else name
         print(
-            f'{name:10} jaw torque {1e3 * rms([r[0] for r in rows]):6.2f} mN m, jaw angle '
+            f'{told:16} jaw torque {1e3 * rms([r[0] for r in rows]):6.2f} mN m, jaw angle '
             f'{np.rad2deg(rms(moving)):5.2f} deg about the zero of its recording, '
             f'{np.rad2deg(rms(angle)):5.2f} deg with it, 95 % intervals hold {inside.mean():.0%}'
         )

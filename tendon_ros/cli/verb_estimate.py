@@ -34,6 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='for static_balance: the channels to use, such as pulley/pulley_spindle/effort',
     )
     parser.add_argument(
+        '--wander',
+        type=float,
+        metavar='X',
+        help='how far the force wanders in a second, N or N m, where that is known: the slower it '
+        'changes, the more measurements tell of it',
+    )
+    parser.add_argument(
         '--rate',
         type=float,
         metavar='HZ',
@@ -63,7 +70,8 @@ def run(args: argparse.Namespace) -> None:
         raise RecordingError(f'--rate {args.rate:g}: must be positive')
     instrument = load_instrument(args.instrument)
     channels = args.channels.split(',') if args.channels else None
-    build(instrument, args.method, channels=channels)  # a mistake is told before any bag is read
+    chosen = {'channels': channels, 'wander': args.wander}
+    build(instrument, args.method, **chosen)  # a mistake is told before any bag is read
     squares, samples, unit = 0.0, 0, ''
     for bag in args.bag:
         out = Path(args.out)
@@ -73,7 +81,7 @@ def run(args: argparse.Namespace) -> None:
             raise RecordingError(f'{out}: exists; give another path or --overwrite')
         recording = read_recording(bag, args.namespace)
         with shown(f'estimating {recording.name}') as progress:
-            observer = build(instrument, args.method, channels=channels)
+            observer = build(instrument, args.method, **chosen)
             estimated = estimate_recording(recording, observer, progress, args.rate)
         out.parent.mkdir(parents=True, exist_ok=True)
         if out.suffix == '.csv':

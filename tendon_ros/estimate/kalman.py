@@ -28,7 +28,8 @@ from tendon_ros.model.statics import Linearisation, without_contacts
 
 FloatArray = NDArray[np.float64]
 
-#: how fast the operating force may wander: its deviation after a second [N or N m times 1/sqrt(s)]
+#: how fast the operating force may wander where nothing is known of it: its deviation after a
+#: second [N or N m times 1/sqrt(s)]
 FORCE_WANDER = 5.0
 #: torque on every pulley that the model does not know: its deviation [N m sqrt(s)]
 TORQUE_WANDER = 1e-3
@@ -41,11 +42,15 @@ class KalmanObserver(Observer):
     The filter.
 
     :param instrument: with encoder and torque of every motor.
+    :param wander: by how much the force wanders in a second [N or N m].
     :param engine: ``auto``, ``compiled`` or ``plain``.
     """
 
-    def __init__(self, instrument: Instrument, *, engine: str = 'auto') -> None:
+    def __init__(
+        self, instrument: Instrument, *, wander: float | None = None, engine: str = 'auto'
+    ) -> None:
         super().__init__()
+        self._wander = FORCE_WANDER if wander is None else wander
         self._instrument = instrument
         self._operating = operating_force(instrument)
         driven = instrument.driven
@@ -127,7 +132,7 @@ class KalmanObserver(Observer):
         carry = half @ half
         density = np.zeros(2 * n + 1)
         density[n : 2 * n] = np.square(TORQUE_WANDER / self._inertia)
-        density[-1] = FORCE_WANDER**2
+        density[-1] = self._wander**2
         noise = np.diag(density)
         spread = noise + 4.0 * half @ noise @ half.T + carry @ noise @ carry.T
         by_effort = np.zeros((2 * n + 1, len(self._driven)))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+import math
 from types import MappingProxyType
+from typing import Any
 
 from tendon_ros.base.errors import InstrumentError, listed
 from tendon_ros.estimate.contact_angle import ContactAngleObserver
@@ -35,6 +37,7 @@ def build(
     method: str,
     *,
     channels: Sequence[str] | None = None,
+    wander: float | None = None,
     engine: str = 'auto',
 ) -> Observer:
     """
@@ -43,17 +46,29 @@ def build(
     :param instrument: the network.
     :param method: a key of :data:`METHODS`.
     :param channels: for ``static_balance``: the channels to use; the motors' own where None.
+    :param wander: not for ``contact_angle``: by how much the force wanders in a second [N or N m],
+        after another time by its square root as much; None where nothing is known of it.
     :param engine: ``auto``, ``compiled`` or ``plain``.
     :return: the observer.
     :raises InstrumentError: where there is no such method, or it does not fit the instrument.
     """
     if method not in _BUILDERS:
         raise InstrumentError(f'method: no method {method!r}; there are {listed(_BUILDERS)}')
-    maker = _BUILDERS[method][1]
-    if channels is None:
-        return maker(instrument, engine=engine)
-    if method != 'static_balance':
-        raise InstrumentError(
-            f"method: {method} reads the motors' own channels; choose channels with static_balance"
-        )
-    return maker(instrument, channels=channels, engine=engine)
+    options: dict[str, Any] = {'engine': engine}
+    if channels is not None:
+        if method != 'static_balance':
+            raise InstrumentError(
+                f"method: {method} reads the motors' own channels; choose channels with "
+                'static_balance'
+            )
+        options['channels'] = channels
+    if wander is not None:
+        if method == 'contact_angle':
+            raise InstrumentError(
+                f'method: {method} looks at each measurement alone; say how far the force '
+                'wanders with static_balance or dynamic'
+            )
+        if not 0.0 < wander < math.inf:
+            raise InstrumentError(f'wander {wander:g}: must be positive, in N or N m')
+        options['wander'] = wander
+    return _BUILDERS[method][1](instrument, **options)

@@ -7,8 +7,7 @@ inertia), and the measured torques must be met as well as their noise lets them:
 squares by Gauss-Newton, whose covariance is the stated uncertainty.
 
 Where a pulley rests or turns round torques tell little of the force, since its friction is as
-uncertain as the angles make it. So the force is not expected to change faster than it can be told
-at the best of times.
+uncertain as the angles make it. So a measurement is weighed with what the force is expected to be.
 """
 
 from __future__ import annotations
@@ -26,6 +25,7 @@ from tendon_ros.estimate.channels import (
     operating_force,
     sensors_of,
 )
+from tendon_ros.estimate.expectation import Expectation
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
@@ -49,8 +49,6 @@ REFUSED, IN_A_ROW = 100.0, 20
 DOUBTFUL = 3.0
 #: velocities for the direction of friction are smoothed over this time [s]
 SMOOTHING = 0.02
-#: time in which the force may change by as much as it is uncertain at best [s]
-STEADY = 0.02
 #: prior deviation of an angle about where it was carried; holds what no channel sees [rad]
 WANDER = 1.0
 
@@ -62,6 +60,8 @@ class StaticBalanceObserver(Observer):
     :param instrument: the network.
     :param channels: channels to use; where None the motors' positions and efforts, or those of
         the shafts where no motor tells its torque.
+    :param wander: by how much the force wanders in a second [N or N m]; None where nothing is
+        known of it.
     :param engine: ``auto``, ``compiled`` or ``plain``.
     :raises InstrumentError: where the channels cannot determine the operating force.
     """
@@ -71,6 +71,7 @@ class StaticBalanceObserver(Observer):
         instrument: Instrument,
         *,
         channels: Sequence[str] | None = None,
+        wander: float | None = None,
         engine: str = 'auto',
     ) -> None:
         super().__init__()
@@ -101,7 +102,8 @@ class StaticBalanceObserver(Observer):
         self._sigma_angle = np.array([doubt(known[name]) for name, _ in self._angles])
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
-        self._least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
+        least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
+        self._expectation = Expectation(least, wander)
         self._rigid = Rigid(instrument, self._free)
         unsure = np.zeros(len(instrument.pulleys))
         unsure[self._fixed] = self._sigma_angle
@@ -160,8 +162,7 @@ class StaticBalanceObserver(Observer):
         self._friction.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._force = 0.0
-        self._spread = math.inf  # of the last force
-        self._best = math.inf  # spread that a single measurement left so far
+        self._expectation.reset()
         self._expected = (0.0, math.inf)
         self._rubbing = np.zeros(len(self._on_pulleys))
         self._refused = 0
@@ -180,10 +181,8 @@ class StaticBalanceObserver(Observer):
         # feed a noisy angle back through the damping
         self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
-        self._expected = (self._force, math.inf)
-        if moving and math.isfinite(self._spread):
-            drift = self._best * gap / STEADY
-            self._expected = (self._force, math.hypot(self._spread, drift))
+        foreseen = self._expectation.foreseen(gap)
+        self._expected = (self._force, foreseen)
         force, covariance = self._solve(angle, measurement)
         if moving:
             self._velocity = self._moved(angle)
@@ -203,15 +202,11 @@ class StaticBalanceObserver(Observer):
         self._angle = angle
         self._force = force
         self._begun = True
-        variance = max(float(covariance[-1, -1]), 1e-300)
-        alone = 1.0 / max(1.0 / variance - self._expected[1] ** -2, 1e-300)
-        self._best = max(self._least, min(self._best, math.sqrt(alone)))
-        # what a model gets wrong does not average out
-        self._spread = max(math.sqrt(variance), self._best)
+        spread = self._expectation.known(float(covariance[-1, -1]), foreseen, gap)
         values = {
             self._operating.channel: force,
             # what does not balance is known so much less
-            f'{self._operating.channel}_std': self._spread * self._strained,
+            f'{self._operating.channel}_std': spread * self._strained,
             **estimated_angles(self._instrument, angle),
         }
         return Estimate(measurement.stamp_ns, values)

@@ -26,6 +26,13 @@ PROGRAM = Program(
             'for static_balance: channels to use instead of the motors, with commas between them, '
             'such as pulley/pulley_spindle/position,pulley/pulley_spindle/effort',
         ),
+        Setting(
+            'wander',
+            0.0,
+            'how far the force wanders in a second, in N or N m, where that is known (not for '
+            'contact_angle); 0: nothing is known of it',
+            low=0.0,
+        ),
         ENGINE,
     ),
     made_by='estimator_node:EstimatorNode',

@@ -54,7 +54,11 @@ class EstimatorNode(TendonNode):
         start = time.monotonic()
         channels = [name for name in str(values['channels']).split(',') if name]
         self._observer: Observer = build(
-            instrument, self._method, channels=channels or None, engine=str(values['engine'])
+            instrument,
+            self._method,
+            channels=channels or None,
+            wander=float(values['wander']) or None,
+            engine=str(values['engine']),
         )
         self._together = Synchroniser(self._observer.needs)
         self._broadcast = Broadcast(self)

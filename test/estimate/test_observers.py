@@ -107,6 +107,40 @@ def test_channels_that_cannot_tell_the_force_are_refused(bench):
         build(load_instrument('single_body'), 'static_balance')
 
 
+def test_what_is_known_of_a_force_makes_it_known_better(rms):
+    """A force that is said to change slowly is told from many measurements, however many."""
+    grasper = load_instrument('davinci_grasper')
+    loud = replace(
+        grasper,
+        sensors=tuple(
+            replace(s, noise=8e-3) if s.kind == 'loop_torque' else s for s in grasper.sensors
+        ),
+    )
+    motion = {'amplitude': '70 deg', 'duration': '10 s', 'frequency': '0.1 Hz'}
+    profile = chosen('sine', loud.motor_names, motion)
+    channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
+    off = {}
+    for rate in (100.0, 500.0):
+        recording = simulate(loud, profile, rate=rate, seed=4)
+        for wander in (None, 0.03):
+            observer = build(loud, 'static_balance', channels=channels, wander=wander)
+            estimated = estimate_recording(recording, observer)
+            estimate = estimated['estimate/torque']
+            error = estimate.value - recording['load_cell/torque'].at(estimate.time)
+            off[rate, wander] = rms(error)
+            assert np.mean(np.abs(error) < 2.0 * estimated['estimate/torque_std'].value) > 0.9
+        assert off[rate, 0.03] < 0.75 * off[rate, None]
+
+
+def test_how_far_a_force_wanders_is_checked(bench):
+    """What it says nothing to, and what it cannot be."""
+    with pytest.raises(InstrumentError, match='static_balance or dynamic'):
+        build(bench, 'contact_angle', wander=1.0)
+    for wander in (0.0, -1.0, float('nan')):
+        with pytest.raises(InstrumentError, match='must be positive'):
+            build(bench, 'dynamic', wander=wander)
+
+
 def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
     """The error lists what the recording has."""
     from tendon_ros.base.recording import Recording
