@@ -4,7 +4,8 @@ Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.gr
 Trains on six runs of three frequencies and two loads, or takes the instrument file of an earlier
 diagnosis, and says of the runs that it has not seen: the torque of the spindle predicted from the
 jaw's torque and the motion; the jaw's torque and angle estimated from the spindle, and from the
-motor alone, without and with knowing how fast the load changes. Standard output is a table, a picture goes to ``--figure``.
+motor alone, without and with knowing how fast the load changes. Standard output is a table, a
+picture goes to ``--figure``.
 """
 
 from __future__ import annotations
