@@ -1,0 +1,36 @@
+"""A search that begins with what an earlier one found goes on from there."""
+
+import pytest
+
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.search import Search
+from tendon_ros.identify.candidate import Candidate
+
+COULOMB = Candidate('coulomb_friction', 'pulley_3')
+GAIN = Candidate('torque_gain', 'motor_L')
+WRONG = Candidate('joint_spring', 'pulley_1')
+
+
+@pytest.mark.parametrize(
+    'earlier',
+    [((COULOMB, {'torque': 0.08}),), ((COULOMB, {'torque': 0.05}), (WRONG, {'stiffness': 0.01}))],
+)
+def test_it_keeps_what_holds_and_finds_the_rest(bench, measured_on, earlier):
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
+        ('torque_gain', 'motor_L', {'gain': 1.1}),
+    )
+    problem = prepared([run], bench).problem
+    begun = problem.empty
+    for candidate, values in earlier:
+        begun = begun.joined(candidate, {p.name: p.neutral for p in candidate.parameters} | values)
+    said = []
+    search = Search(
+        problem, [COULOMB, GAIN, WRONG], 1, lambda what, _done: said.append(what), begun=begun
+    )
+    found = search.run()
+    assert set(found.final.model.causes) == {COULOMB, GAIN}
+    # the first round is the earlier search's
+    assert 'looking for causes, round 1' not in said
+    assert 'looking for causes, round 2' in said
