@@ -8,12 +8,12 @@ from tendon_ros.identify.candidate import Candidate
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 GAIN = Candidate('torque_gain', 'motor_L')
-WRONG = Candidate('joint_spring', 'pulley_1')
+WRONG = Candidate('torque_bias', 'motor_M')
 
 
 @pytest.mark.parametrize(
     'earlier',
-    [((COULOMB, {'torque': 0.08}),), ((COULOMB, {'torque': 0.05}), (WRONG, {'stiffness': 0.01}))],
+    [((COULOMB, {'torque': 0.08}),), ((COULOMB, {'torque': 0.05}), (WRONG, {'torque': 0.05}))],
 )
 def test_it_keeps_what_holds_and_finds_the_rest(bench, measured_on, earlier):
     run = measured_on(
