@@ -18,7 +18,14 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
-from tendon_ros.diagnose.worth import hopeless, LEAST, open_question, worthwhile
+from tendon_ros.diagnose.worth import (
+    hopeless,
+    LEAST,
+    moving,
+    open_question,
+    stands_out,
+    worthwhile,
+)
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
@@ -26,7 +33,8 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen, Seen
 from tendon_ros.identify.subset import Member, Subsets
 
-MOST = 8  # causes
+#: causes; and from how many on each has to explain most of some channel, or the search goes astray
+MOST, MANY = 8, 5
 ROUNDS = 6  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
@@ -213,7 +221,11 @@ class Search:
     def _believed(self, found: Found, before: Fit, fit: Fit) -> bool:
         """Return whether a state has causes that the one before has not, and needs them."""
         new = set(fit.model.causes) - set(before.model.causes)
-        return bool(new) and worthwhile(self.problem, found.start, before, fit)
+        if not new or not worthwhile(self.problem, found.start, before, fit):
+            return False
+        if len(fit.model.causes) <= MANY:
+            return True
+        return stands_out(self.problem, found.start, before, moving(self.problem, before, fit))
 
     def _simplest(
         self, found: Found, before: Fit, state: Fit, proposals: Sequence[Proposal], many: Fit

@@ -56,17 +56,24 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     # what the form of a law leaves has no other cause that would explain most of it
     if gain > form or gain > TAKES * problem.structured(before.left):
         return True
-    if _stands_out(problem, start, before, after, form):
+    if stands_out(problem, start, before, after):
         return True
     return _apart(before, after, profile)
 
 
-def _stands_out(problem: Problem, start: Fit, before: Fit, after: Fit, form: float) -> bool:
+def stands_out(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     """
     Return whether a cause explains most of a channel of which the other laws explain little.
 
     What a law gets wrong shows where it explains much; a preload that moves one pulley does not.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param before: without this one.
+    :param after: with it.
+    :return: whether.
     """
+    form = own_power(problem, start) + float(np.mean(form_profile(problem, start, before)))
     first, then, last = (by_channel(problem, fit) for fit in (start, before, after))
     explained = (start.cost - before.cost) / max(len(start.left), 1)
     wrong = form / max(explained, 1e-12)
