@@ -163,15 +163,15 @@ class Statics:
         :param shift: how much further, one way and the other [rad], shape (n,).
         :return: the larger change of each pulley's friction [N m], shape (n,).
         """
-        still = np.zeros(len(angle))
+        change = still = np.zeros(len(angle))
+        if not self._runner.memories:
+            return change
         here = self.at(angle, still).friction
-        change = still
-        if self._runner.memories:
-            kept = self._runner.kept()
-            for further in (angle + shift, angle - shift):
-                self.carry(angle, further, MOMENT)
-                change = np.maximum(change, np.abs(self.at(further, still).friction - here))
-                self._runner.back(kept)
+        kept = self._runner.kept()
+        for further in (angle + shift, angle - shift):
+            self.carry(angle, further, MOMENT)
+            change = np.maximum(change, np.abs(self.at(further, still).friction - here))
+            self._runner.back(kept)
         return change
 
     def reset(self, pose: Mapping[str, float] | None = None) -> None:
