@@ -30,11 +30,14 @@ def test_numbers(words):
 
 
 def test_counts_in_words():
-    names = {3: 'three', 4: 'four', 5: 'Five', 6: 'six'}
+    names = {3: 'three', 4: 'four', 6: 'six', 8: 'Eight'}
+    places = {6: 'sixth'}
     assert f'{names[int(tolerance.REACH)]} deviations at most' in TEXT
     assert f's in {names[prepare.KEPT]} is never fitted' in TEXT
     assert f'from {names[prepare.WHOLE]} recordings on' in TEXT
     assert f'{names[search.MOST]} causes at most' in TEXT
+    assert f'{names[search.ROUNDS].capitalize()} rounds at most' in TEXT
+    assert f'from the {places[search.MANY + 1]} on' in TEXT
 
 
 def test_verdicts_and_files():
