@@ -21,7 +21,6 @@ from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.worth import (
     hopeless,
     LEAST,
-    moving,
     open_question,
     stands_out,
     worthwhile,
@@ -223,9 +222,8 @@ class Search:
         new = set(fit.model.causes) - set(before.model.causes)
         if not new or not worthwhile(self.problem, found.start, before, fit):
             return False
-        if len(fit.model.causes) <= MANY:
-            return True
-        return stands_out(self.problem, found.start, before, moving(self.problem, before, fit))
+        few = len(fit.model.causes) <= MANY
+        return few or stands_out(self.problem, found.start, before, fit)
 
     def _simplest(
         self, found: Found, before: Fit, state: Fit, proposals: Sequence[Proposal], many: Fit

@@ -159,11 +159,9 @@ def _searched(
     if again.quieter(ready):
         report('looking again: what was taken for noise was not', 0.0)
         ready = again
-        begun = found.final.model
-        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
+        found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
     if surprising(ready, found):
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
-        begun = found.final.model
-        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
+        found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
     return ready, found

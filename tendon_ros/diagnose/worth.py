@@ -56,7 +56,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     # what the form of a law leaves has no other cause that would explain most of it
     if gain > form or gain > TAKES * problem.structured(before.left):
         return True
-    if stands_out(problem, start, before, after):
+    if _most_of_one(problem, start, before, after, form):
         return True
     return _apart(before, after, profile)
 
@@ -71,9 +71,14 @@ def stands_out(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     :param start: without any cause.
     :param before: without this one.
     :param after: with it.
-    :return: whether.
+    :return: whether, what it merely holds left out.
     """
-    form = own_power(problem, start) + float(np.mean(form_profile(problem, start, before)))
+    form = form_power(problem, start, before)
+    return _most_of_one(problem, start, before, moving(problem, before, after), form)
+
+
+def _most_of_one(problem: Problem, start: Fit, before: Fit, after: Fit, form: float) -> bool:
+    """Return whether a cause explains most of a channel, more than other laws may leave there."""
     first, then, last = (by_channel(problem, fit) for fit in (start, before, after))
     explained = (start.cost - before.cost) / max(len(start.left), 1)
     wrong = form / max(explained, 1e-12)
