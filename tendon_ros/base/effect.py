@@ -25,7 +25,7 @@ Laws depend on ``t`` only through switches, whose times ``switches`` declares.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -69,7 +69,8 @@ class Effect:
     of what the effect does: geometry and scales are exact, friction is not, creep least of all.
     ``by_load``: what it does grows with what other effects do to its place.
     ``other(**parameters)``: the name and parameters of a simpler effect that these make it, if
-    any.
+    any. ``holds``: simpler effects that are part of this one, each with the parameters of this
+    one that grow by all of the simpler one's only parameter when both are at one place.
     """
 
     id: str
@@ -82,6 +83,7 @@ class Effect:
     form: float = 0.01
     by_load: bool = False
     other: Callable[..., tuple[str, dict[str, float]] | None] | None = None
+    holds: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

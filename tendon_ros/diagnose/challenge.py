@@ -10,12 +10,13 @@ from collections.abc import Sequence
 from itertools import combinations
 import math
 
+from tendon_ros.diagnose.bent import degenerate, is_part, plain, widened
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
-from tendon_ros.identify.screening import Screen, Seen
+from tendon_ros.identify.screening import Proposal, Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 MANY = 3  # causes from which on not every candidate challenges each of them
@@ -111,7 +112,34 @@ class Challenge:
         proposals = [p for p in proposals if p.candidate != cause]
         missed = without.cost - found.final.cost
         rivals = self._steps.fitted(without, proposals, missed, cause.effect)
-        return self._sharpened(found, without, rivals)
+        wider = self._wider(found.final, cause, proposals)
+        again = {r.candidate for r in wider}
+        rivals = sorted(
+            [*wider, *(r for r in rivals if r.candidate not in again)], key=judged_cost
+        )
+        rivals = self._sharpened(found, without, rivals)
+        return [r for r in rivals if self._more_than_a_part(r)]
+
+    def _more_than_a_part(self, rival: Rival) -> bool:
+        """Return whether a rival does anything that a simpler effect does not."""
+        model = rival.fit.model
+        bent = degenerate(self._problem, rival.candidate, model.values(-1))
+        return not bent and plain(self._problem, model, -1) is None
+
+    def _wider(self, state: Fit, cause: Candidate, proposals: Sequence[Proposal]) -> list[Rival]:
+        """Return the fits of effects that hold the cause's, which begin from what it found."""
+        k = state.model.causes.index(cause)
+        rest, known = state.model.without(k), self._problem.slopes(state)
+
+        def one(proposal: Proposal) -> Rival:
+            candidate = proposal.candidate
+            values = widened(proposal.values, candidate, state.model.values(k), cause)
+            # only a careful fit tells whether there is more to it
+            fit = self._problem.fitted(rest.joined(candidate, values), known, 20, 1e-3)
+            return Rival(candidate, fit)
+
+        fits = self._steps.pool.map(one, (p for p in proposals if is_part(cause, p.candidate)))
+        return [r for r in fits if math.isfinite(r.fit.cost)]
 
     def _without(self, found: Found, k: int) -> Fit:
         """

@@ -8,7 +8,15 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late, simpler
+from tendon_ros.diagnose.bent import (
+    as_one,
+    at_once,
+    degenerate,
+    excuses,
+    least_late,
+    plain,
+    simpler,
+)
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.effects import find
@@ -189,7 +197,7 @@ class Steps:
                 state = self._renamed(self.settled(smaller.model))
 
     def _renamed(self, state: Fit) -> Fit:
-        """Give causes the names that their parameters deserve, and drop those that are none."""
+        """Give causes the names that they deserve, join what is one, and drop what is none."""
         model = state.model
         taken = {(c.effect, c.place) for c in model.causes}
         for k in reversed(range(len(model.causes))):
@@ -197,9 +205,9 @@ class Steps:
             if excuses(self.problem, model, k):
                 model = model.without(k)
                 continue
-            if not degenerate(self.problem, cause, values):
+            other = simpler(cause, values) or plain(self.problem, model, k)
+            if other is None and not degenerate(self.problem, cause, values):
                 continue
-            other = simpler(cause, values)
             model = model.without(k)
             if other is None:
                 continue
@@ -207,6 +215,7 @@ class Steps:
             known = self._allowed.get(name)
             if known is not None and name not in taken:
                 model = model.joined(known, _instead(known, other[1]))
+        model = as_one(model)
         return state if model is state.model else self.settled(model)
 
     def _parted(self, state: Fit) -> Fit:

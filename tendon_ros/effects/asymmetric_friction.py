@@ -62,4 +62,5 @@ EFFECT = Effect(
     dissipative=True,
     form=0.06,
     other=no_difference,
+    holds={'coulomb_friction': ('forward', 'backward')},
 )

@@ -34,9 +34,9 @@ def stribeck_friction_law(
 
 def no_fall(static: float, sliding: float, speed: float) -> tuple[str, dict[str, float]] | None:
     """Return the Coulomb friction that it is where it falls by less than a tenth in sliding."""
-    if static - sliding > 0.1 * static:
+    if static > 0.1 * (static + sliding):
         return None
-    return 'coulomb_friction', {'torque': 0.5 * (static + sliding)}
+    return 'coulomb_friction', {'torque': sliding + 0.5 * static}
 
 
 EFFECT = Effect(
@@ -77,4 +77,5 @@ EFFECT = Effect(
     dissipative=True,
     form=0.06,
     other=no_fall,
+    holds={'coulomb_friction': ('sliding',)},
 )

@@ -2,19 +2,20 @@
 
 import pytest
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late, simpler
+from tendon_ros.diagnose.bent import as_one, at_once, degenerate, excuses, least_late, simpler
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
 
 BENT = [
     ('asymmetric_friction', {'forward': 0.2, 'backward': 0.21}, {'torque': 0.205}),
-    ('stribeck_friction', {'static': 0.2, 'sliding': 0.19, 'speed': 0.1}, {'torque': 0.195}),
+    ('stribeck_friction', {'static': 0.02, 'sliding': 0.19, 'speed': 0.1}, {'torque': 0.2}),
     ('presliding_friction', {'torque': 0.3, 'angle': 1e-4}, {'torque': 0.3}),
 ]
 OWN = [
     ('asymmetric_friction', {'forward': 0.2, 'backward': 0.4}),
-    ('stribeck_friction', {'static': 0.2, 'sliding': 0.1, 'speed': 0.1}),
+    # what holding adds is a fifth of all
+    ('stribeck_friction', {'static': 0.05, 'sliding': 0.2, 'speed': 0.1}),
     ('presliding_friction', {'torque': 0.3, 'angle': 0.01}),
     ('coulomb_friction', {'torque': 0.3}),
 ]
@@ -67,6 +68,45 @@ def test_a_limit_that_most_torques_pass_is_none(sound_problem, limit, excused):
     model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit})
     assert excuses(sound_problem, model, 1) is excused
     assert not excuses(sound_problem, model, 0)
+
+
+@pytest.mark.parametrize(
+    ('effect', 'values', 'joined'),
+    [
+        (
+            'stribeck_friction',
+            {'static': 0.1, 'sliding': 0.05, 'speed': 0.1},
+            {'static': 0.1, 'sliding': 0.25, 'speed': 0.1},
+        ),
+        (
+            'asymmetric_friction',
+            {'forward': 0.2, 'backward': 0.1},
+            {'forward': 0.4, 'backward': 0.3},
+        ),
+    ],
+)
+def test_plain_friction_beside_friction_that_holds_it_is_one(
+    sound_problem, effect, values, joined
+):
+    plain = Candidate('coulomb_friction', 'pulley_3')
+    model = sound_problem.empty.joined(plain, {'torque': 0.2})
+    model = model.joined(Candidate(effect, 'pulley_3'), values)
+    elsewhere = model.joined(Candidate('coulomb_friction', 'pulley_2'), {'torque': 0.3})
+    one = as_one(elsewhere)
+    assert {(c.effect, c.place) for c in one.causes} == {
+        (effect, 'pulley_3'),
+        ('coulomb_friction', 'pulley_2'),
+    }
+    [k] = [k for k, c in enumerate(one.causes) if c.place == 'pulley_3']
+    assert one.values(k) == pytest.approx(joined)
+
+
+def test_friction_of_the_file_stays_beside_another(sound_problem):
+    known = Candidate('coulomb_friction', 'pulley_3', given=(('torque', 0.1),))
+    model = sound_problem.empty.joined(known, {'torque': 0.2})
+    shape = {'static': 0.1, 'sliding': 0.05, 'speed': 0.1}
+    model = model.joined(Candidate('stribeck_friction', 'pulley_3'), shape)
+    assert as_one(model) is model
 
 
 def test_creep_that_is_over_at_once_is_a_softer_cable():
