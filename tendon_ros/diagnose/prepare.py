@@ -73,7 +73,7 @@ class Prepared:
             )
             for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.instrument, segments, self.noise, self.shift)
+        return _problems(rollouts.instrument, segments, self.noise, self.shift, rollouts.jobs)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -98,15 +98,16 @@ class Prepared:
         :return: the problems.
         """
         rollouts = self.whole.rollouts
-        return _problems(rollouts.instrument, rollouts.segments, self.noise, shift)
+        return _problems(rollouts.instrument, rollouts.segments, self.noise, shift, rollouts.jobs)
 
 
-def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepared:
+def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
     """
     Make recordings ready to be diagnosed.
 
     :param recordings: admitted ones.
     :param instrument: the network.
+    :param jobs: threads.
     :return: the problem.
     """
     period = bin_length(recordings, instrument)
@@ -114,7 +115,7 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument) -> Prepare
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
     predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
     noise = noise_of_counts(instrument, segments, recordings, predicted)
-    return _problems(instrument, noise.given(segments, predicted), noise, 0)
+    return _problems(instrument, noise.given(segments, predicted), noise, 0, jobs)
 
 
 def _problems(
@@ -122,8 +123,9 @@ def _problems(
     segments: Sequence[Segment],
     noise: Noise,
     shift: int,
+    jobs: int,
 ) -> Prepared:
-    rollouts = Rollouts(instrument, segments)
+    rollouts = Rollouts(instrument, segments, jobs)
     usable = [s.time > SETTLING for s in segments]
     held = held_out(segments, shift)
     moving = tolerances(instrument)

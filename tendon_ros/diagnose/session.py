@@ -79,7 +79,7 @@ def diagnose(
     given = instrument
     instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
-    ready = prepared(intake.recordings, instrument)
+    ready = prepared(intake.recordings, instrument, jobs)
     measured = {name for r in intake.recordings for name in r.channels}
     candidates = everyone(
         instrument, sorted(measured), withhold, magnitude(intake.recordings, instrument)

@@ -71,13 +71,17 @@ class Problem(Unknowns):
         """
         x = self.pack(model)
         axes = self.axes(model)
-        found = np.empty((len(left), len(columns)))
-        for n, j in enumerate(columns):
+
+        def one(j: int) -> FloatArray:
             high = axes[j].ends[1]
             step = 0.02 * max(1.0, abs(x[j])) if not axes[j].log else 0.05
             if axes[j].spread == 1.0:
                 step = 0.5
-            found[:, n] = self._change(model, left, j, step if x[j] + step <= high else -step)
+            return self._change(model, left, j, step if x[j] + step <= high else -step)
+
+        found = np.empty((len(left), len(columns)))
+        for n, column in enumerate(self.rollouts.each(one, columns)):
+            found[:, n] = column
         return found
 
     def _change(self, model: Model, left: FloatArray, j: int, step: float) -> FloatArray:

@@ -6,7 +6,8 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property
 
@@ -37,11 +38,14 @@ class Rollouts:
 
     :param instrument: the network; its own effects are always in force.
     :param segments: what was measured.
+    :param jobs: threads for predictions that do not depend on each other.
     """
 
-    def __init__(self, instrument: Instrument, segments: Sequence[Segment]) -> None:
+    def __init__(self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
+        self.jobs = jobs
+        self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
         self._base = tuple(
             replace(
@@ -111,6 +115,18 @@ class Rollouts:
                 segment = self.segments[n]
                 found.append(np.zeros((len(segment.measured), len(segment.time))))
         return tuple(found)
+
+    def each(self, work: Callable[[int], FloatArray], numbers: Sequence[int]) -> list[FloatArray]:
+        """
+        Return what a function of predictions gives for each of several numbers.
+
+        :param work: the function; it asks for nothing here itself.
+        :param numbers: what to call it with.
+        :return: in their order; the kernel leaves the interpreter free for other threads.
+        """
+        if self._pool is None or len(numbers) < 2:
+            return [work(n) for n in numbers]
+        return list(self._pool.map(work, numbers))
 
     def rest(self) -> dict[str, float]:
         """
