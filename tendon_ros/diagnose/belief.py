@@ -9,13 +9,15 @@ off with them, so the instrument that a diagnosis writes has them.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+import math
 
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, equals, foretells, signs_beside
+from tendon_ros.diagnose.judge import chance, equals, foretells, IDLE, signs_beside
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.identify.explanation import Model
 
 
@@ -24,10 +26,10 @@ class Belief:
     """
     Which causes of the last state of a search are believed.
 
-    ``weighed``: each of them. ``named``: those that are named, with what speaks for them;
-    ``companies``: causes that make up for one another, of which the first is named for all.
-    ``accepted``: these and who is named through them. ``kept``: the accepted ones and what
-    foretells beside them.
+    ``weighed``: each of them; those that undo each other are not believed. ``named``: those that
+    are named, with what speaks for them; ``companies``: causes that make up for one another, of
+    which the first is named for all. ``accepted``: these and who is named through them.
+    ``kept``: the accepted ones and what foretells beside them.
     """
 
     weighed: tuple[Weighed, ...]
@@ -58,9 +60,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
         prediction, since it will not happen again.
     """
     causes = found.final.model.causes
-    weighed = tuple(_weighed(ready, found, k) for k in range(len(causes)))
+    undone = undoing(ready.problem, found.final)
+    left = _left_without(ready, found, undone)
+    weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
     named = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED}
-    doubted = [k for k in range(len(causes)) if k not in named]
+    doubted = [k for k in range(len(causes)) if k not in named and k not in undone]
     together = companies(ready, found, weighed, doubted)
     named |= {company.members[0]: company.weighed for company in together}
     accepted = {*named}.union(*(company.members for company in together))
@@ -78,14 +82,28 @@ def belief(ready: Prepared, found: Found) -> Belief:
     )
 
 
-def _weighed(ready: Prepared, found: Found, k: int) -> Weighed:
-    """Return what speaks for one cause of the last state."""
+def _left_without(ready: Prepared, found: Found, undone: Collection[int]) -> float:
+    """Return the structured misfit of the causes that do not undo each other, refitted."""
+    final = found.final
+    if undone:
+        rest = ready.problem.fitted(final.model.without(*undone), rounds=6, accuracy=1e-2)
+        final = rest if math.isfinite(rest.cost) else found.start
+    return ready.problem.structured(final.left)
+
+
+def _weighed(ready: Prepared, found: Found, k: int, left: float, undone: bool) -> Weighed:
+    """
+    Return what speaks for one cause of the last state.
+
+    ``left``: structured misfit of all that may be believed; ``undone``: whether others undo it.
+    """
     without = found.without[k]
-    signs = signs_beside(ready.problem, found, without)
+    signs = replace(signs_beside(ready.problem, found, without), left=left)
+    likely = chance(ready, found, k, signs)
     return Weighed(
         cause=found.final.model.causes[k],
         equal=tuple(r.candidate for r in equals(ready.problem, found, k)),
         signs=signs,
-        chance=chance(ready, found, k, signs),
+        chance=min(IDLE, likely) if undone else likely,
         without=without,
     )

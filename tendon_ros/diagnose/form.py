@@ -65,7 +65,7 @@ def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = Tr
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
     held = sticking(problem, state) if resting else [None] * len(causes)
     for k, cause in enumerate(causes):
-        power = _change(problem, state, k) ** 2
+        power = change(problem, state, k) ** 2
         form = np.full(len(found), _form(problem, cause.effect, cause.place) ** 2)
         if held[k] is not None:
             form[held[k]] += HELD**2
@@ -74,8 +74,15 @@ def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = Tr
     return found
 
 
-def _change(problem: Problem, state: Fit, k: int) -> FloatArray:
-    """Return what a cause does to each sample, to first order where it has sizes."""
+def change(problem: Problem, state: Fit, k: int) -> FloatArray:
+    """
+    Return what a cause does to each sample, to first order where it has sizes.
+
+    :param problem: the data.
+    :param state: with the cause.
+    :param k: which.
+    :return: in noise deviations, shape (samples,).
+    """
     cause = state.model.causes[k]
     at = sum(len(c.parameters) for c in state.model.causes[:k])
     own = [at + n for n in cause.coordinates.sizes]

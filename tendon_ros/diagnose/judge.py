@@ -122,7 +122,8 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     return Signs(max(worth, 1e-9), in_one, left, explained, form, event)
 
 
-#: probability that a cause has at most which foretells nothing, or may be what laws get wrong once
+#: probability that a cause has at most which foretells nothing, which others undo, or which may be
+#: what laws get wrong once
 IDLE = 0.3
 
 

@@ -18,6 +18,7 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
+from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
     hopeless,
     LEAST,
@@ -129,11 +130,17 @@ class Search:
             if found.final is state:
                 break
             gained = found.final.cost < GAINED * state.cost
-            if hopeless(self.problem, found.start, found.final) and not gained:
+            if self._imitates(found) and not gained:
                 break
             state = challenged = found.final
         self._ordered(found)
         return found
+
+    def _imitates(self, found: Found) -> bool:
+        """Return whether further causes would only help to imitate one that is not known."""
+        if hopeless(self.problem, found.start, found.final):
+            return True
+        return bool(undoing(self.problem, found.final))
 
     def _better(self, one: Fit | None, other: Fit | None) -> Fit | None:
         """Return the one of two states that leaves less; of two that do alike, the simpler one."""

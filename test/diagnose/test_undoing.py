@@ -1,0 +1,72 @@
+"""Large effects whose small difference imitates another one are no causes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import IDLE
+from tendon_ros.diagnose.naming import NAMED
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.undoing import undoing, undone
+from tendon_ros.identify.candidate import Candidate
+
+WAVE = np.sin(np.linspace(0.0, 20.0, 400))
+OTHER = np.cos(np.linspace(0.0, 31.0, 400))
+
+
+@pytest.mark.parametrize(
+    ('changes', 'rows'),
+    [
+        ([WAVE, OTHER], ()),
+        ([WAVE, WAVE], ()),
+        # one takes back a fifth of the other
+        ([WAVE, -0.2 * WAVE], ()),
+        ([WAVE, 1.5 * OTHER - WAVE], ()),
+        ([WAVE, 0.2 * OTHER - WAVE], (0, 1)),
+        ([10.0 * OTHER, WAVE, 0.2 * OTHER - WAVE], (1, 2)),
+        # three of which no two undo each other alone
+        ([WAVE, OTHER, -WAVE - OTHER], (0, 1, 2)),
+        ([np.zeros(400), WAVE, 0.1 * OTHER - WAVE], (1, 2)),
+        ([np.zeros(400), np.zeros(400)], ()),
+    ],
+)
+def test_little_stays_of_what_is_undone(changes, rows):
+    assert undone(np.array(changes)) == set(rows)
+
+
+@pytest.fixture(scope='module')
+def imitated(bench, measured_on):
+    """Return a search that ended with two friction torques and two torques that nearly cancel."""
+    run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.1}))
+    ready = prepared([run], bench)
+    problem = ready.problem
+    model = problem.empty.joined(Candidate('coulomb_friction', 'pulley_3'), {'torque': 0.1})
+    model = model.joined(Candidate('torque_bias', 'motor_L'), {'torque': 0.4})
+    model = model.joined(Candidate('gravity', 'pulley_L'), {'torque': 0.4, 'phase': -np.pi / 2.0})
+    final = problem.fitted(model, rounds=0)
+    every = range(final.slope.shape[1])
+    final = replace(final, slope=problem.slope(final.model, final.left, every))
+    without = [problem.fitted(model.without(k), rounds=0) for k in range(3)]
+    start = problem.fitted(problem.empty)
+    return ready, Found(states=[start, final], rivals=[[], [], []], without=without)
+
+
+def test_causes_that_undo_each_other_are_not_named(imitated):
+    ready, found = imitated
+    assert undoing(ready.problem, found.final) == {1, 2}
+    judged = belief(ready, found)
+    friction, *others = judged.weighed
+    assert friction.chance >= NAMED
+    assert [w.chance <= IDLE for w in others] == [True, True]
+    assert set(judged.named) == {0}
+    assert not judged.companies
+
+
+def test_what_they_hid_is_left(imitated):
+    ready, found = imitated
+    [friction, *_] = belief(ready, found).weighed
+    hidden = ready.problem.fitted(found.final.model.without(1, 2), rounds=6, accuracy=1e-2)
+    assert friction.signs.left == pytest.approx(ready.problem.structured(hidden.left), rel=0.05)
