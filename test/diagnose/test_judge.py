@@ -6,7 +6,7 @@ import pytest
 
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import foretells
+from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -44,6 +44,13 @@ def test_a_cause_that_spoils_what_was_not_fitted_does_not(ready):
     found.without.append(found.final)
     found.states.append(replace(found.final, model=wrong))
     assert not foretells(ready, found, 1)
+
+
+@pytest.mark.parametrize(('worth', 'believed'), [(0.04, False), (0.06, True)])
+def test_what_laws_may_get_wrong_ten_times_over_is_no_cause(ready, worth, believed):
+    found = found_with(ready.problem, FRICTION)
+    signs = Signs(worth, in_one=worth, left=0.0, explained=50.0, form=0.5)
+    assert (chance(ready, found, 0, signs) > IDLE) is believed
 
 
 def test_a_slip_from_the_first_happened_between_recordings(ready):
