@@ -2,7 +2,15 @@
 
 import pytest
 
-from tendon_ros.diagnose.bent import as_one, at_once, degenerate, excuses, least_late, simpler
+from tendon_ros.diagnose.bent import (
+    as_one,
+    at_once,
+    degenerate,
+    excuses,
+    least_late,
+    plain,
+    simpler,
+)
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -99,6 +107,29 @@ def test_plain_friction_beside_friction_that_holds_it_is_one(
     }
     [k] = [k for k, c in enumerate(one.causes) if c.place == 'pulley_3']
     assert one.values(k) == pytest.approx(joined)
+
+
+@pytest.mark.parametrize(
+    ('effect', 'values', 'torque'),
+    [
+        # the pulleys of the bench turn by some tenths of a radian a second
+        ('stribeck_friction', {'static': 0.1, 'sliding': 0.1, 'speed': 20.0}, 0.2),
+        ('stribeck_friction', {'static': 0.1, 'sliding': 0.1, 'speed': 0.01}, None),
+        ('asymmetric_friction', {'forward': 0.2, 'backward': 0.1}, None),
+        ('asymmetric_friction', {'forward': 0.2, 'backward': 0.19}, 0.195),
+        ('coulomb_friction', {'torque': 0.2}, None),
+        ('viscous_friction', {'damping': 0.1}, None),
+    ],
+)
+def test_a_law_of_which_nothing_was_seen_is_the_simple_one(sound_problem, effect, values, torque):
+    model = sound_problem.empty.joined(Candidate(effect, 'pulley_3'), values)
+    found = plain(sound_problem, model, 0)
+    if torque is None:
+        assert found is None
+    else:
+        cause, parameters = found
+        assert (cause.effect, cause.place) == ('coulomb_friction', 'pulley_3')
+        assert parameters == pytest.approx({'torque': torque}, rel=0.02)
 
 
 def test_friction_of_the_file_stays_beside_another(sound_problem):

@@ -34,3 +34,23 @@ def test_it_keeps_what_holds_and_finds_the_rest(bench, measured_on, earlier):
     # the first round is the earlier search's
     assert 'looking for causes, round 1' not in said
     assert 'looking for causes, round 2' in said
+
+
+STRIBECK = Candidate('stribeck_friction', 'pulley_3')
+
+
+@pytest.mark.parametrize(
+    ('effect', 'values'),
+    [
+        ('coulomb_friction', {'torque': 0.1}),
+        # a third of it falls
+        ('stribeck_friction', {'static': 0.1, 'sliding': 0.2, 'speed': 0.03}),
+    ],
+)
+def test_friction_is_what_holds_the_other_or_is_held_by_it(bench, measured_on, effect, values):
+    problem = prepared([measured_on(bench, (effect, 'pulley_3', values))], bench).problem
+    found = Search(problem, [COULOMB, STRIBECK], 1).run()
+    [cause] = found.final.model.causes
+    assert cause.effect == effect
+    assert found.final.model.values(0) == pytest.approx(values, rel=0.1)
+    assert STRIBECK not in [rival.candidate for rival in found.rivals[0]]
