@@ -55,22 +55,38 @@ def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = Tr
     :param resting: as for :func:`form_power`.
     :return: noise power that each sample may keep although the causes are right, shape (samples,).
     """
-    found = np.zeros(len(state.left))
+    parts = form_parts(problem, start, state, resting=resting)
+    return np.sum([np.zeros(len(state.left)), *parts], axis=0)
+
+
+def form_parts(
+    problem: Problem, start: Fit, state: Fit, *, resting: bool = True
+) -> list[FloatArray]:
+    """
+    Return where and when the law of each cause may be wrong.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with them.
+    :param resting: as for :func:`form_power`.
+    :return: for each cause the noise power that each sample may keep, shape (samples,).
+    """
     causes = state.model.causes
     if not causes:
-        return found
+        return []
     explained = max(0.0, start.cost - state.cost) / len(state.left)
     # what each is worth beside the others; what they share is shared out
     worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
     held = sticking(problem, state) if resting else [None] * len(causes)
+    found = []
     for k, cause in enumerate(causes):
         power = change(problem, state, k) ** 2
-        form = np.full(len(found), _form(problem, cause.effect, cause.place) ** 2)
+        form = np.full(len(power), _form(problem, cause.effect, cause.place) ** 2)
         if held[k] is not None:
             form[held[k]] += HELD**2
         shared = min(float(worth[k]), explained) / max(float(np.mean(power)), 1e-12)
-        found += form * power * shared
+        found.append(form * power * shared)
     return found
 
 

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_power, tie
+from tendon_ros.diagnose.form import form_parts, form_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.worth import gains, TIMES_EVENT
@@ -31,7 +31,8 @@ class Signs:
 
     ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
     channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``form``: what their laws may leave of that. ``event``: it happened once.
+    causes explain; ``form``: what their laws may leave of that; ``beside``: the same of the others
+    at its place. ``event``: it happened once.
     """
 
     worth: float
@@ -40,6 +41,7 @@ class Signs:
     explained: float
     form: float
     event: bool = False
+    beside: float = 0.0
 
     @property
     def most(self) -> float:
@@ -119,7 +121,15 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     form = form_power(problem, found.start, final)
     gone = set(final.model.causes) - set(without.model.causes)
     event = any(cause.instants for cause in gone)
-    return Signs(max(worth, 1e-9), in_one, left, explained, form, event)
+    places = {cause.place for cause in gone}
+    beside = sum(
+        float(np.mean(part))
+        for cause, part in zip(
+            final.model.causes, form_parts(problem, found.start, final), strict=True
+        )
+        if cause.place in places and cause not in gone
+    )
+    return Signs(max(worth, 1e-9), in_one, left, explained, form, event, beside)
 
 
 #: probability that a cause has at most which foretells nothing, which others undo, or which may be
@@ -169,8 +179,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     likely = probability(signs)
     # of all times, one fits what a law gets wrong
     luck = signs.event and signs.most < TIMES_EVENT * signs.form
-    # and what laws get wrong may always be told by something else
-    drowned = signs.most < DROWNED * signs.form
+    # and what laws get wrong may always be told by something else, at their own places above all
+    drowned = signs.most < max(DROWNED * signs.form, signs.beside)
     believed = foretells(ready, found, k) and not luck and not drowned
     return likely if believed else min(IDLE, likely)
 

@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.form import form_parts
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs
+from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs, signs_beside
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -51,6 +52,24 @@ def test_what_laws_may_get_wrong_ten_times_over_is_no_cause(ready, worth, believ
     found = found_with(ready.problem, FRICTION)
     signs = Signs(worth, in_one=worth, left=0.0, explained=50.0, form=0.5)
     assert (chance(ready, found, 0, signs) > IDLE) is believed
+
+
+@pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
+def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believed):
+    found = found_with(ready.problem, FRICTION)
+    signs = Signs(0.3, in_one=0.3, left=0.0, explained=5.0, form=1.0, beside=beside)
+    assert (chance(ready, found, 0, signs) > IDLE) is believed
+
+
+def test_the_law_beside_is_that_of_the_others_at_the_place(ready):
+    viscous = ('viscous_friction', 'pulley_3', {'damping': 0.05})
+    bias = ('torque_bias', 'motor_M', {'torque': 0.01})
+    found = found_with(ready.problem, FRICTION, viscous, bias)
+    of = [signs_beside(ready.problem, found, without) for without in found.without]
+    parts = form_parts(ready.problem, found.start, found.final)
+    assert of[1].beside == pytest.approx(float(parts[0].mean()))
+    assert of[0].beside == pytest.approx(float(parts[1].mean()))
+    assert of[2].beside == 0.0
 
 
 def test_a_slip_from_the_first_happened_between_recordings(ready):
