@@ -10,9 +10,10 @@ from collections.abc import Sequence
 from itertools import combinations
 import math
 
-from tendon_ros.diagnose.bent import degenerate, is_part, plain, widened
+from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.parts import is_part, plain, widened
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit

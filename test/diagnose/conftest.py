@@ -6,6 +6,7 @@ import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose import session
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen
@@ -116,3 +117,9 @@ def two_run(bench, measured_on):
 def two_outcome(bench, two_run, quick):
     """Return what is said of it."""
     return quick([two_run], bench)
+
+
+@pytest.fixture(scope='session')
+def sound_problem(bench, sound):
+    """Return the problem of the bench with nothing wrong."""
+    return prepared(sound, bench).problem
