@@ -135,8 +135,6 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
 #: probability that a cause has at most which foretells nothing, which others undo, or which may be
 #: what laws get wrong once
 IDLE = 0.3
-#: part of what the laws of all causes may leave below which a cause may be no more than that
-DROWNED = 0.1
 
 
 def foretell(ready: Prepared, found: Found, without: Fit) -> bool:
@@ -179,8 +177,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     likely = probability(signs)
     # of all times, one fits what a law gets wrong
     luck = signs.event and signs.most < TIMES_EVENT * signs.form
-    # and what laws get wrong may always be told by something else, at their own places above all
-    drowned = signs.most < max(DROWNED * signs.form, signs.beside)
+    # and what a law gets wrong may be told by something else at its place
+    drowned = signs.most < signs.beside
     believed = foretells(ready, found, k) and not luck and not drowned
     return likely if believed else min(IDLE, likely)
 

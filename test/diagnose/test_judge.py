@@ -47,13 +47,6 @@ def test_a_cause_that_spoils_what_was_not_fitted_does_not(ready):
     assert not foretells(ready, found, 1)
 
 
-@pytest.mark.parametrize(('worth', 'believed'), [(0.04, False), (0.06, True)])
-def test_what_laws_may_get_wrong_ten_times_over_is_no_cause(ready, worth, believed):
-    found = found_with(ready.problem, FRICTION)
-    signs = Signs(worth, in_one=worth, left=0.0, explained=50.0, form=0.5)
-    assert (chance(ready, found, 0, signs) > IDLE) is believed
-
-
 @pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
 def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believed):
     found = found_with(ready.problem, FRICTION)
