@@ -30,6 +30,9 @@ class Line:
         time = self.segments[0].time
         return (torque * (1.0 + np.sin(time))[None, :],)
 
+    def each(self, work, numbers):
+        return [work(n) for n in numbers]
+
 
 def noise(rng, memory):
     """Return noise of one deviation with a memory of so many bins."""

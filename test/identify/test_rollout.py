@@ -149,3 +149,11 @@ def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     grid = segment.period * np.arange(len(plain))
     expected = np.interp(grid + late * segment.period, grid, segment.motion.value[0])
     assert plain[middle] == pytest.approx(expected[middle], abs=1e-3)
+
+
+def test_threads_change_no_derivative(bench, measured_on):
+    run = measured_on(bench, INJECTED['friction'])
+    alone, together = (prepared([run], bench, jobs).problem for jobs in (1, 3))
+    fits = [problem.fitted(problem.empty, rounds=2) for problem in (alone, together)]
+    assert np.array_equal(fits[0].slope, fits[1].slope)
+    assert fits[0].cost == fits[1].cost
