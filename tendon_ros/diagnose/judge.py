@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_parts, form_power, tie
+from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.worth import gains, TIMES_EVENT
@@ -118,17 +118,15 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     left = problem.structured(final.left)
     worth, in_one = gains(problem, without, final)
     explained = (found.start.cost - final.cost) / samples
-    form = form_power(problem, found.start, final)
-    gone = set(final.model.causes) - set(without.model.causes)
+    parts = form_parts(problem, found.start, final)
+    wrong = [float(np.mean(part)) for part in parts]
+    form = own_power(problem, found.start) + sum(wrong)
+    causes = final.model.causes
+    gone = set(causes) - set(without.model.causes)
     event = any(cause.instants for cause in gone)
     places = {cause.place for cause in gone}
-    beside = sum(
-        float(np.mean(part))
-        for cause, part in zip(
-            final.model.causes, form_parts(problem, found.start, final), strict=True
-        )
-        if cause.place in places and cause not in gone
-    )
+    kept = zip(causes, wrong, strict=True)
+    beside = sum(power for c, power in kept if c.place in places and c not in gone)
     return Signs(max(worth, 1e-9), in_one, left, explained, form, event, beside)
 
 

@@ -138,9 +138,8 @@ class Search:
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""
-        if hopeless(self.problem, found.start, found.final):
-            return True
-        return bool(undoing(self.problem, found.final))
+        final = found.final
+        return hopeless(self.problem, found.start, final) or bool(undoing(self.problem, final))
 
     def _better(self, one: Fit | None, other: Fit | None) -> Fit | None:
         """Return the one of two states that leaves less; of two that do alike, the simpler one."""
