@@ -19,7 +19,7 @@ from tendon_ros.diagnose.enough import enough, KEPT
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.rollout import loosest, Rollouts
 from tendon_ros.identify.segment import (
     bin_length,
     loaded,
@@ -73,7 +73,7 @@ class Prepared:
             )
             for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.instrument, segments, self.noise, self.shift, rollouts.jobs)
+        return _problems(rollouts.like(segments), self.noise, self.shift)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -98,7 +98,7 @@ class Prepared:
         :return: the problems.
         """
         rollouts = self.whole.rollouts
-        return _problems(rollouts.instrument, rollouts.segments, self.noise, shift, rollouts.jobs)
+        return _problems(rollouts, self.noise, shift)
 
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
@@ -115,20 +115,16 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
     predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
     noise = noise_of_counts(instrument, segments, recordings, predicted)
-    return _problems(instrument, noise.given(segments, predicted), noise, 0, jobs)
+    segments = noise.given(segments, predicted)
+    tolerance = loosest(instrument, segments, predicted)
+    return _problems(Rollouts(instrument, segments, jobs, tolerance), noise, 0)
 
 
-def _problems(
-    instrument: Instrument,
-    segments: Sequence[Segment],
-    noise: Noise,
-    shift: int,
-    jobs: int,
-) -> Prepared:
-    rollouts = Rollouts(instrument, segments, jobs)
+def _problems(rollouts: Rollouts, noise: Noise, shift: int) -> Prepared:
+    segments = rollouts.segments
     usable = [s.time > SETTLING for s in segments]
     held = held_out(segments, shift)
-    moving = tolerances(instrument)
+    moving = tolerances(rollouts.instrument)
     return Prepared(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),

@@ -25,7 +25,9 @@ FloatArray = NDArray[np.float64]
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
 MOVES = 2
 FAINT = 0.1  # of the noise: changes below are mostly chance
-FAR = 0.3  # on its axis: what a guess may move until its derivative is taken anew
+#: on its axis: what a guess may move until its derivative has to follow; how often a rough fit
+#: takes such derivatives anew where it seems to end
+FAR, LOOKS = 0.3, 1
 BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
 CAREFUL = 1e-3  # accuracy from which on they are
 
@@ -207,12 +209,11 @@ class Problem(Unknowns):
         slope[:, still] = 0.0
         damping = 1e-3
         taken = x.copy()
+        looks = LOOKS if accuracy > CAREFUL else rounds
+        anew = fresh
         for _ in range(rounds):
-            # a guess may go far, and its derivative with it
-            gone = [j for j in guessed if abs(x[j] - taken[j]) > FAR]
-            taken[gone] = x[gone]
-            asked = [*fresh, *gone]
-            slope[:, asked] = self.slope(self.unpack(model, x), left, asked)
+            slope[:, anew] = self.slope(self.unpack(model, x), left, anew)
+            anew = fresh
             normal = slope.T @ slope + np.diag(prior)
             gradient = slope.T @ left + prior * x
             before = cost
@@ -228,12 +229,20 @@ class Problem(Unknowns):
                 now = self.left(self.unpack(model, trial))
                 new = float(now @ now + prior @ trial**2)
                 if np.isfinite(new) and new < cost:
+                    far = [j for j in guessed if abs(trial[j] - taken[j]) > FAR]
+                    _follow(slope, far, trial - x, now - left)
                     x, left, cost = trial, now, new
                     damping = max(damping * 0.2, 1e-7)
                     break
                 damping *= 8.0
             if before - cost <= accuracy * before:
-                break
+                far = [j for j in guessed if abs(x[j] - taken[j]) > FAR]
+                if not far or not looks:
+                    break
+                # an end is one only by derivatives that were taken near it
+                looks -= 1
+                taken[far] = x[far]
+                anew = [*fresh, *far]
         return Fit(self.unpack(model, x), left, slope, cost)
 
     def _computed(self, model: Model, x: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:
@@ -281,6 +290,14 @@ class Problem(Unknowns):
         slope = fit.slope if free is None else fit.slope * free
         normal = slope.T @ slope + np.diag(self.prior(fit.model) + 1e-9)
         return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+
+
+def _follow(slope: FloatArray, columns: list[int], step: FloatArray, change: FloatArray) -> None:
+    """Turn derivatives so that they tell what a step has changed, by Broyden's rule."""
+    part = step[columns]
+    square = float(part @ part)
+    if square > 0.0:
+        slope[:, columns] += np.outer((change - slope @ step) / square, part)
 
 
 def _free(x: FloatArray, bounds: FloatArray, gradient: FloatArray) -> NDArray[np.bool_]:

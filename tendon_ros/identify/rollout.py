@@ -30,6 +30,10 @@ BoolArray = NDArray[np.bool_]
 
 USUAL = 0.4  # part of a motor's torques that no unknown limit cuts off
 TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
+ROUGH = 2e-5  # the same where nothing that is measured notices
+#: of the noise: what that may change of the file's model. Dry friction makes it some five times
+#: more, and derivatives are taken from changes of a tenth
+UNNOTICED = 3e-3
 
 
 class Rollouts:
@@ -39,12 +43,20 @@ class Rollouts:
     :param instrument: the network; its own effects are always in force.
     :param segments: what was measured.
     :param jobs: threads for predictions that do not depend on each other.
+    :param tolerance: of a step [rad].
     """
 
-    def __init__(self, instrument: Instrument, segments: Sequence[Segment], jobs: int = 1) -> None:
+    def __init__(
+        self,
+        instrument: Instrument,
+        segments: Sequence[Segment],
+        jobs: int = 1,
+        tolerance: float = TOLERANCE,
+    ) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
         self.jobs = jobs
+        self.tolerance = tolerance
         self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
         self._base = tuple(
@@ -65,6 +77,15 @@ class Rollouts:
             ]
             for segment in self.segments
         )
+
+    def like(self, segments: Sequence[Segment]) -> Rollouts:
+        """
+        Return rollouts of other segments, as accurate as these.
+
+        :param segments: what was measured.
+        :return: the rollouts.
+        """
+        return Rollouts(self.instrument, segments, self.jobs, self.tolerance)
 
     @cached_property
     def measured(self) -> tuple[FloatArray, ...]:
@@ -160,7 +181,7 @@ class Rollouts:
             segment.prescribed,
             len(segment.time) - 1,
             pushed=segment.pushed,
-            tolerance=TOLERANCE,
+            tolerance=self.tolerance,
             pose=segment.pose,
         )
         return rows, numbers
@@ -175,6 +196,28 @@ class Rollouts:
         found = as_held(rows, numbers, segment, found)
         reported = as_reported(rows.instrument, numbers, segment, found, self.usual)
         return _zeroed(segment, reported)
+
+
+def loosest(
+    instrument: Instrument, segments: Sequence[Segment], predicted: Sequence[FloatArray]
+) -> float:
+    """
+    Return how roughly rollouts may be computed.
+
+    :param instrument: the network.
+    :param segments: what was measured, with its noise.
+    :param predicted: of each the channels as the file has them, computed finely.
+    :return: a tolerance of a step [rad].
+    """
+    rough = Rollouts(instrument, segments, tolerance=ROUGH).predicted([[] for _ in segments])
+    changes = [
+        (row - fine) / m.noise
+        for segment, rows, fines in zip(segments, rough, predicted, strict=True)
+        for m, row, fine in zip(segment.measured, rows, fines, strict=True)
+    ]
+    # infinite where the file's own model diverges
+    noticed = float(np.max([np.sqrt(np.mean(c**2)) for c in changes]))
+    return ROUGH if noticed < UNNOTICED else TOLERANCE
 
 
 def modified(instrument: Instrument) -> Numbers:
