@@ -8,7 +8,6 @@ wave into gravity, one push into a push and a slip.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
@@ -86,7 +85,7 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
         return False
     instrument = problem.rollouts.instrument
     [uses, *_] = problem.uses(model)
-    numbers = modified(replace(instrument, effects=in_force(instrument.effects, uses)))
+    numbers = modified(instrument, in_force(instrument.effects, uses))
     names = [f'motor_{name}' for name in instrument.motor_names]
     j = names.index(cause.place)
     usual = problem.rollouts.usual(

@@ -201,17 +201,15 @@ class Trial:
     def _predicted(self, uses: Sequence[EffectUse], drive: _Drive | None = None) -> FloatArray:
         """Return what the channels say when the model is driven along the motion."""
         along = drive or self._drive
-        instrument = replace(
-            self._base,
-            effects=in_force(self._base.effects, uses),
-            control_period=along.segment.period,
-        )
-        numbers = modified(instrument)
+        instrument = replace(self._base, control_period=along.segment.period)
+        effects = in_force(self._base.effects, uses)
+        numbers = modified(instrument, effects)
         rows = predict(
             instrument,
             true_motion(instrument, numbers, along.segment),
             along.segment.prescribed,
             len(along.segment.time) - 1,
+            effects=effects,
             tolerance=ACCURACY,
         )
         found = np.array([s.reading(rows) for s in self._sensed])

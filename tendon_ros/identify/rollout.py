@@ -173,13 +173,14 @@ class Rollouts:
         """Return what the model does along a segment, and its numbers with all effects."""
         segment = self.segments[n]
         base = self._base[n]
-        instrument = replace(base, effects=in_force(base.effects, uses))
-        numbers = modified(instrument)
+        effects = in_force(base.effects, uses)
+        numbers = modified(base, effects)
         rows = predict(
-            instrument,
-            true_motion(instrument, numbers, segment),
+            base,
+            true_motion(base, numbers, segment),
             segment.prescribed,
             len(segment.time) - 1,
+            effects=effects,
             pushed=segment.pushed,
             tolerance=self.tolerance,
             pose=segment.pose,
@@ -220,15 +221,16 @@ def loosest(
     return ROUGH if noticed < UNNOTICED else TOLERANCE
 
 
-def modified(instrument: Instrument) -> Numbers:
+def modified(instrument: Instrument, effects: Sequence[EffectUse]) -> Numbers:
     """
-    Return the numbers of an instrument after all its effects have modified them.
+    Return the numbers of an instrument after effects have modified them.
 
-    :param instrument: with its effects.
+    :param instrument: the network.
+    :param effects: those in force.
     :return: the numbers.
     """
     numbers = Numbers(instrument)
-    for use in instrument.effects:
+    for use in effects:
         effect = find(use.effect)
         if effect.modify is not None:
             numbers.kind, index = place_index(instrument, use.place)
@@ -240,7 +242,7 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
     """
     Return what drove the rig: motions that encoders saw and torques that motors reported, mended.
 
-    :param instrument: with its effects.
+    :param instrument: the network.
     :param numbers: after its effects.
     :param segment: what was measured.
     :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,12 +193,12 @@ class Instrument:
     description: str = ''
     tolerances: Mapping[str, float] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def pulley_names(self) -> tuple[str, ...]:
         """Names of the pulleys, in order."""
         return tuple(p.name for p in self.pulleys)
 
-    @property
+    @cached_property
     def motor_names(self) -> tuple[str, ...]:
         """Names of the motors, in order."""
         return tuple(m.name for m in self.motors)
@@ -227,11 +228,33 @@ class Instrument:
         :raises InstrumentError: where there is no such pulley.
         """
         try:
-            return self.pulley_names.index(pulley)
-        except ValueError:
+            return self._indices[pulley]
+        except KeyError:
             raise InstrumentError(
                 f'{self.name}: no pulley {pulley!r}; it has {listed(self.pulley_names)}'
             ) from None
+
+    @cached_property
+    def _indices(self) -> Mapping[str, int]:
+        return {name: i for i, name in enumerate(self.pulley_names)}
+
+    @cached_property
+    def place_indices(self) -> Mapping[str, tuple[str, int]]:
+        """Kind and index among its kind of every place; couplings are counted after the loops."""
+        tables = {
+            'pulley': [f'pulley_{p.name}' for p in self.pulleys],
+            'cable': [f'cable_{loop.name}' for loop in self.loops],
+            'coupling': [f'coupling_{c.name}' for c in self.couplings],
+            'motor': [f'motor_{m.name}' for m in self.motors],
+            'sensor': [s.name for s in self.sensors],
+            'contact': [contact_place(self, c) for c in self.contacts],
+        }
+        first = {'coupling': len(self.loops)}
+        return {
+            name: (kind, index)
+            for kind, names in tables.items()
+            for index, name in enumerate(names, first.get(kind, 0))
+        }
 
     def routing(self) -> FloatArray:
         """
@@ -248,14 +271,7 @@ class Instrument:
 
     def places(self) -> tuple[str, ...]:
         """Return every place where an effect can act, by the names of the contract."""
-        return (
-            *(f'pulley_{p.name}' for p in self.pulleys),
-            *(f'cable_{loop.name}' for loop in self.loops),
-            *(f'coupling_{c.name}' for c in self.couplings),
-            *(f'motor_{m.name}' for m in self.motors),
-            *(s.name for s in self.sensors),
-            *(contact_place(self, c) for c in self.contacts),
-        )
+        return tuple(self.place_indices)
 
 
 def contact_place(instrument: Instrument, contact: Contact) -> str:

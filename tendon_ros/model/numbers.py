@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, listed
-from tendon_ros.model.instrument import contact_place, Instrument
+from tendon_ros.model.instrument import Instrument
 
 FloatArray = NDArray[np.float64]
 
@@ -73,18 +73,9 @@ def place_index(instrument: Instrument, place: str) -> tuple[str, int]:
         counted after the loops.
     :raises EffectError: where there is no such place.
     """
-    tables: Mapping[str, Sequence[str]] = {
-        'pulley': [f'pulley_{p.name}' for p in instrument.pulleys],
-        'cable': [f'cable_{loop.name}' for loop in instrument.loops],
-        'coupling': [f'coupling_{c.name}' for c in instrument.couplings],
-        'motor': [f'motor_{m.name}' for m in instrument.motors],
-        'sensor': [s.name for s in instrument.sensors],
-        'contact': [contact_place(instrument, c) for c in instrument.contacts],
-    }
-    for kind, names in tables.items():
-        if place in names:
-            index = names.index(place)
-            return kind, index + (len(instrument.loops) if kind == 'coupling' else 0)
-    raise EffectError(
-        f'{instrument.name}: no place {place!r}; it has {listed(instrument.places())}'
-    )
+    found = instrument.place_indices.get(place)
+    if found is None:
+        raise EffectError(
+            f'{instrument.name}: no place {place!r}; it has {listed(instrument.places())}'
+        )
+    return found

@@ -198,6 +198,7 @@ def predict(
     prescribed: Sequence[str],
     ticks: int,
     *,
+    effects: Sequence[EffectUse] | None = None,
     pushed: Sequence[str] = (),
     every: int = 1,
     engine: str = 'auto',
@@ -207,10 +208,11 @@ def predict(
     """
     Drive the model with given motion and predict everything else: open loop, no controller.
 
-    :param instrument: the network with its effects; its control period is the sampling period.
+    :param instrument: the network; its control period is the sampling period.
     :param motion: signals: first those of the prescribed pulleys, then those of the pushed ones.
     :param prescribed: pulleys whose motion is given.
     :param ticks: periods to advance.
+    :param effects: effects in force; those of the instrument where None.
     :param pushed: pulleys that a given torque [N m] acts on.
     :param every: record every so many ticks.
     :param engine: as for :class:`Simulation`.
@@ -220,6 +222,7 @@ def predict(
     """
     arrays = arrays_of(
         instrument,
+        effects,
         prescribed={name: row for row, name in enumerate(prescribed)},
         pushed={name: len(prescribed) + row for row, name in enumerate(pushed)},
         tolerance=tolerance,

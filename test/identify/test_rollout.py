@@ -143,7 +143,9 @@ def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     noisy = replace(segment, motion=replace(segment.motion, value=segment.motion.value + noise))
     use = EffectUse('sensor_delay', 'encoder_body', {'time': late * segment.period})
     rig = replace(body, effects=(use,))
-    moved, plain = (true_motion(rig, modified(rig), s).value[0] for s in (noisy, segment))
+    moved, plain = (
+        true_motion(rig, modified(rig, rig.effects), s).value[0] for s in (noisy, segment)
+    )
     middle = slice(50, -50)
     assert np.std((moved - plain)[middle]) == pytest.approx(1e-3, rel=0.1)
     grid = segment.period * np.arange(len(plain))
