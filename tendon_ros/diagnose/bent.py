@@ -22,6 +22,9 @@ from tendon_ros.model.effect_use import in_force
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
+#: of the time between samples within which a delay is the logger's, which reads one register after
+#: the other
+POLLED = 0.5
 #: waves of a ripple that a motor has to pass
 SEEN = 0.5
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
@@ -39,8 +42,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param candidate: the effect.
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
-        a delay that a controller's hold makes, a ripple of which not half a wave was seen,
-        friction that never yields, a number of the file within its tolerance.
+        a delay that a controller's hold or a logger makes, a ripple of which not half a wave was
+        seen, friction that never yields, a number of the file within its tolerance.
     """
     for t in problem.tolerances:
         if t.is_moved_by(candidate):
@@ -48,7 +51,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
             return t.axis.low < value < t.axis.high
     # a controller holds its torque for a period, on average half of one too long
     held = HOLDS * problem.rollouts.instrument.control_period
-    if candidate.effect == 'sensor_delay' and values['time'] < held:
+    polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
+    if candidate.effect == 'sensor_delay' and values['time'] < max(held, polled):
         return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them

@@ -108,7 +108,9 @@ class Search:
         challenged: Fit | None = None
         while True:
             grown: Fit | None = None
-            if turn < ROUNDS and open_question(self.problem, state):
+            if turn < ROUNDS and (
+                open_question(self.problem, state) or (turn == 0 and _promising(state, proposals))
+            ):
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:
                     screen = Screen(self.problem, state, seen)
@@ -203,8 +205,7 @@ class Search:
         members = self._subset(screen, proposals, room)
         if not members:
             # numbers within tolerance that hide one beyond it cost more than what they leave
-            promising = [p for p in proposals if p.gain > LEAST * len(state.left)]
-            alone = self._alone(state, promising)
+            alone = self._alone(state, _promising(state, proposals))
             return alone if alone and self._believed(found, before, alone) else None
         model = state.model
         for member in members:
@@ -274,3 +275,13 @@ class Search:
             if np.isfinite(fit.cost):
                 states.append(fit)
         found.states = [*states, final] if order else states
+
+
+def _promising(state: Fit, proposals: Sequence[Proposal]) -> list[Proposal]:
+    """
+    Return the proposals that explain enough to be believed, to first order.
+
+    Where samples are few and noisy no structure is to be seen in what is left, and yet a cause
+    that turns with the motion may stand out.
+    """
+    return [p for p in proposals if p.gain > LEAST * len(state.left)]

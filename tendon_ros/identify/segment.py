@@ -69,7 +69,7 @@ class Segment:
     there. ``pose`` is where the other pulleys began [rad]. ``pushed`` are pulleys on which a
     known torque acts, of a motor without encoder or of a measured load; torques follow the motions
     in ``motion``. ``still``: of each prescribed pulley, shape (bins,), where its motion cannot be
-    told from rest.
+    told from rest. ``sampling`` [s] is the time between samples of the slowest channel.
     """
 
     name: str
@@ -83,6 +83,7 @@ class Segment:
     start: float = 0.0
     pushed: tuple[str, ...] = ()
     still: tuple[BoolArray, ...] = ()
+    sampling: float = 0.0
 
     def at_rest(self, instrument: Instrument) -> Iterator[tuple[int, int, BoolArray]]:
         """
@@ -173,6 +174,10 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
             at_rest(row, reading_error(recording[d.sensor.channel], d.sensor), period)
             for d, row in zip(driving, rows, strict=True)
             if not d.by_torque
+        ),
+        sampling=max(
+            float(np.median(np.diff(recording[name].time)))
+            for name in (*known, *(m.sensor.channel for m in measured))
         ),
     )
 
