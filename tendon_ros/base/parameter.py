@@ -17,9 +17,10 @@ class Parameter:
     of forces in an instrument that takes a newton metre or so. ``search`` says how a fit finds
     its start where a coarse grid would miss it: ``instant`` (a time of the recording),
     ``duration`` (of something that begins at an instant), ``cycles`` (of a turn), ``level``
-    (of the motor's torque), ``share`` (all or nothing); what it is to the size beside it: its
-    ``phase``, the angle at which it comes to ``rest``; ``shape``: a shape in spite of its
-    neutral value; or ``guess``: fitted only where an instrument file says that it is a guess.
+    (of the motor's torque), ``share`` (all or nothing), ``switch`` (yes or no, which nothing
+    fits); what it is to the size beside it: its ``phase``, the angle at which it comes to
+    ``rest``; ``shape``: a shape in spite of its neutral value; or ``guess``: fitted only where
+    an instrument file says that it is a guess.
     """
 
     name: str
@@ -30,7 +31,17 @@ class Parameter:
     high: float
     typical: float
     search: Literal[
-        '', 'instant', 'duration', 'cycles', 'level', 'share', 'phase', 'rest', 'shape', 'guess'
+        '',
+        'instant',
+        'duration',
+        'cycles',
+        'level',
+        'share',
+        'switch',
+        'phase',
+        'rest',
+        'shape',
+        'guess',
     ] = ''
 
     @property

@@ -37,6 +37,7 @@ EFFECT = Effect(
             low=0.0,
             high=1.0,
             typical=1.0,
+            search='switch',
         ),
     ),
     modify=modify,

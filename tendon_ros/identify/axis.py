@@ -63,9 +63,11 @@ def axis_of(parameter: Parameter) -> Axis:
     Return the axis of an effect's parameter.
 
     :param parameter: sizes are seen about their neutral value; positive shapes in decades.
-    :return: the axis.
+    :return: the axis; of a yes or no a single place.
     """
     p = parameter
+    if p.search == 'switch':
+        return Axis(p.name, p.unit, p.typical, p.typical, p.neutral, 1.0)
     if p.search == 'instant':
         return Axis(p.name, p.unit, p.low, p.high, 0.0, 0.05)
     if p.search in ('shape', 'level') or (p.shapes_only and p.low > 0.0):

@@ -50,7 +50,7 @@ class Coordinates:
         return tuple(
             n
             for n, p in enumerate(self._parameters)
-            if not (p.is_shape or p.search == 'share') or self.paired(n)
+            if not (p.is_shape or p.search in ('share', 'switch')) or self.paired(n)
         )
 
     def paired(self, n: int) -> bool:

@@ -182,7 +182,8 @@ def sizes(cause: Cause) -> str:
     values = []
     for name, found in cause.parameters.items():
         value, interval = with_interval(found.value, found.ci95, found.unit)
-        values.append(f'{name} {value} ({interval})')
+        yes_or_no = found.ci95[0] == found.ci95[1]
+        values.append(f'{name} {value}' if yes_or_no else f'{name} {value} ({interval})')
     return ', '.join(values)
 
 

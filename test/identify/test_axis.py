@@ -5,13 +5,14 @@ import math
 import pytest
 
 from tendon_ros.base.parameter import Parameter
-from tendon_ros.effects import catalogue
+from tendon_ros.effects import catalogue, find
 from tendon_ros.identify.axis import Axis, axis_of
 
 PARAMETERS = [
     pytest.param(p, id=f'{effect.id}.{p.name}')
     for effect in catalogue().values()
     for p in effect.parameters
+    if p.search != 'switch'
 ]
 
 
@@ -54,3 +55,10 @@ def test_a_place_far_out_does_not_overflow():
     axis = Axis('x', '1', 1e-6, 1e6, 1.0, 0.5, log=True)
     assert axis.value(1e9) == 1e6
     assert axis.value(-1e9) == 1e-6
+
+
+def test_a_yes_or_no_does_not_move():
+    [rectified] = find('sensor_rectified').parameters
+    axis = axis_of(rectified)
+    assert axis.ends == (1.0, 1.0)
+    assert [axis.value(z) for z in (-3.0, 0.4, 1.0, 2.0)] == [1.0] * 4

@@ -14,7 +14,10 @@ from tendon_ros.identify.coordinates import Coordinates
 @pytest.mark.parametrize('effect', catalogue().values(), ids=lambda e: e.id)
 def test_there_and_back(effect):
     coordinates = Coordinates(effect.parameters)
-    values = {p.name: min(max(0.7 * p.typical, p.low), p.high) for p in effect.parameters}
+    values = {
+        p.name: min(max(0.7 * p.typical, p.low), p.high) if p.search != 'switch' else p.typical
+        for p in effect.parameters
+    }
     back = coordinates.values(coordinates.place(values))
     assert back == pytest.approx(values, rel=1e-9, abs=1e-12)
 
@@ -25,7 +28,7 @@ def test_no_size_is_no_effect(effect):
     z = [0.0 if n in coordinates.sizes else 0.3 for n in range(len(effect.parameters))]
     values = coordinates.values(z)
     for p in effect.parameters:
-        if not p.is_shape and p.search != 'share':
+        if not p.is_shape and p.search not in ('share', 'switch'):
             assert values[p.name] == pytest.approx(p.neutral, abs=1e-12)
 
 
