@@ -114,7 +114,7 @@ def calibrate(
         )
     report('fitting all of the recording', 0.1)
     ready = ready.heard_again(ready.problem.fitted(start, rounds=20).model)
-    final = ready.problem.fitted(start, rounds=20)
+    final = ready.problem.centred(ready.problem.fitted(start, rounds=20))
     beginnings = []
     length = min(float(s.time[-1]) for s in ready.problem.rollouts.segments)
     tried = [seconds for seconds in SECONDS if seconds < length]

@@ -99,7 +99,7 @@ def diagnose(
     kept = held.kept if held.named or beyond >= NAMED else ()
     model = held.model(found, kept)
     heard = ready.heard_again(model)
-    final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
+    final = heard.problem.centred(heard.problem.fitted(model, rounds=6, accuracy=1e-4))
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]

@@ -8,8 +8,8 @@ of inertia acts the same whatever else is there.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from itertools import product
 import math
 
@@ -17,14 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.unknowns import Unknowns
+from tendon_ros.identify.slopes import Slopes
 
 FloatArray = NDArray[np.float64]
 
 #: [s] that begin and end of events are tried at, and how often
 RETIMED = tuple(sign * shift for shift in (0.32, 0.16, 0.08, 0.04, 0.02, 0.01) for sign in (-1, 1))
 MOVES = 2
-FAINT = 0.1  # of the noise: changes below are mostly chance
 #: on its axis: what a guess may move until its derivative has to follow; how often a rough fit
 #: takes such derivatives anew where it seems to end
 FAR, LOOKS = 0.3, 1
@@ -48,7 +47,7 @@ class Fit:
     cost: float
 
 
-class Problem(Unknowns):
+class Problem(Slopes):
     """The recordings as a least-squares problem."""
 
     def free(self, fit: Fit) -> NDArray[np.bool_]:
@@ -62,53 +61,22 @@ class Problem(Unknowns):
         bounds = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2)
         return _free(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
 
-    def slope(self, model: Model, left: FloatArray, columns: Sequence[int]) -> FloatArray:
+    def centred(self, fit: Fit) -> Fit:
         """
-        Return derivatives of what is left.
+        Return a fit with derivatives that are good enough to say what it does not know.
 
-        :param model: where.
-        :param left: what is left there.
-        :param columns: of which unknowns.
-        :return: shape (samples, columns).
+        Where torques, inertias and frictions are guessed only their ratios can be known; the
+        curvature in derivatives to one side would tell the rest, the surer the more data there is.
+
+        :param fit: the fit.
+        :return: the same with derivatives by steps to both sides.
         """
-        x = self.pack(model)
-        axes = self.axes(model)
-
-        def one(j: int) -> FloatArray:
-            high = axes[j].ends[1]
-            step = 0.02 * max(1.0, abs(x[j])) if not axes[j].log else 0.05
-            if axes[j].spread == 1.0:
-                step = 0.5
-            return self._change(model, left, j, step if x[j] + step <= high else -step)
-
-        found = np.empty((len(left), len(columns)))
-        for n, column in enumerate(self.rollouts.each(one, columns)):
-            found[:, n] = column
-        return found
-
-    def _change(self, model: Model, left: FloatArray, j: int, step: float) -> FloatArray:
-        """
-        Return the derivative of what is left by one unknown, from a step along its axis.
-
-        Where dry friction sticks a hair earlier or later is chance: a step that changes hardly
-        more than that is made longer.
-        """
-        x = self.pack(model)
-        low, high = self.axes(model)[j].ends
-        while True:
-            moved = x.copy()
-            moved[j] += step
-            change = self.left(self.unpack(model, moved)) - left
-            if not np.isfinite(change).all():
-                return np.zeros(len(left))
-            longer = 4.0 * step
-            if (
-                float(change @ change) > FAINT**2 * len(left)
-                or abs(longer) > 0.5
-                or not low <= x[j] + longer <= high
-            ):
-                return np.asarray(change / step)
-            step = longer
+        owned = self.owned(fit.model)
+        own = fit.slope.shape[1] - len(owned)
+        moving = [j for j in range(fit.slope.shape[1]) if j < own or not owned[j - own]]
+        slope = np.zeros_like(fit.slope)
+        slope[:, moving] = self.slope(fit.model, fit.left, moving, centred=True)
+        return replace(fit, slope=slope)
 
     def fitted(
         self,

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.intervals import deviations, mean_square_interval, parameter_intervals
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.segment import Measured, Segment
@@ -96,3 +97,27 @@ def test_the_interval_of_a_gap_covers_it():
 def test_a_gap_of_one_block_has_no_width():
     assert mean_square_interval([4.0]) == (2.0, 2.0)
     assert mean_square_interval([]) == (0.0, 0.0)
+
+
+def test_no_number_of_recordings_tells_the_scale_of_what_is_guessed(measured_on):
+    axis = load_instrument('driven_axis')
+    motion = (('duration', '6 s'), ('amplitude', '30 deg'))
+    # torques, inertia, damping and friction of 1.5 times their size look the same
+    truth = (
+        ('inertia', 'pulley_axis', {'scale': 1.5}),
+        ('viscous_friction', 'pulley_axis', {'damping': 0.005}),
+        ('coulomb_friction', 'pulley_axis', {'torque': 0.06}),
+        ('torque_gain', 'motor_axis', {'gain': 1.5}),
+    )
+    runs = [measured_on(axis, *truth, settings=motion, seed=s, name=f'run_{s}') for s in range(6)]
+    widths = []
+    for count in (1, 6):
+        problem = prepared(runs[:count], axis).whole
+        friction = Candidate('coulomb_friction', 'pulley_axis')
+        model = problem.empty.joined(friction, {'torque': 0.03})
+        fit = problem.centred(problem.fitted(model))
+        [interval] = parameter_intervals(problem, fit)
+        low, high = interval['torque']
+        assert low < 0.06 < high
+        widths.append(high - low)
+    assert widths[1] > 0.5 * widths[0]
