@@ -90,6 +90,11 @@ class Channel:
             quantity = self.name.rsplit('/', 1)[-1]
             object.__setattr__(self, 'unit', FIELD_UNITS.get(quantity, ''))
 
+    @property
+    def sampling(self) -> float:
+        """The usual spacing of stamps [s], of two samples and more."""
+        return float(np.median(np.diff(self.time)))
+
     def at(self, time: FloatArray) -> FloatArray:
         """
         Return the values at other times, linearly interpolated, ends held.

@@ -198,6 +198,6 @@ def _moved(
     for row, name in enumerate(encoder_channels(instrument)):
         error = reading_error(recording[name], sensors[name])
         if error > 0.0:
-            sampling = float(np.median(np.diff(recording[name].time)))
+            sampling = recording[name].sampling
             rows[row] = again(rows[row], error, sampling)
     return Signals.smooth(segment.motion.start, segment.motion.step, np.array(rows))

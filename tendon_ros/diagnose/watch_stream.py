@@ -150,6 +150,6 @@ class Streams:
 
 def _after_holes(channel: Channel) -> float:
     """Return the time after the last hole; zero where there is none."""
-    sampling = float(np.median(np.diff(channel.time)))
+    sampling = channel.sampling
     holes = np.flatnonzero(np.diff(channel.time) > max(HOLE, 5.0 * sampling))
     return float(channel.time[holes[-1] + 1]) if holes.size else 0.0

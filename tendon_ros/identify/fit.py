@@ -71,9 +71,7 @@ class Problem(Slopes):
         :param fit: the fit.
         :return: the same with derivatives by steps to both sides.
         """
-        owned = self.owned(fit.model)
-        own = fit.slope.shape[1] - len(owned)
-        moving = [j for j in range(fit.slope.shape[1]) if j < own or not owned[j - own]]
+        moving = np.flatnonzero(~self.still(fit.model)).tolist()
         slope = np.zeros_like(fit.slope)
         slope[:, moving] = self.slope(fit.model, fit.left, moving, centred=True)
         return replace(fit, slope=slope)
@@ -150,8 +148,7 @@ class Problem(Slopes):
         bounds = np.array([axis.ends for axis in axes]).reshape(-1, 2)
         prior = self.prior(model)
         own = len(axes) - len(self.tolerances)
-        # a tolerance that a cause owns does not move
-        still = np.array([False] * own + self.owned(model))
+        still = self.still(model)
         x = self.pack(model)
         x[still] = 0.0
         x = np.clip(x, bounds[:, 0], bounds[:, 1])
@@ -177,6 +174,7 @@ class Problem(Slopes):
         slope[:, still] = 0.0
         damping = 1e-3
         taken = x.copy()
+        far: list[int] = []  # guesses that have left where their derivatives were taken
         looks = LOOKS if accuracy > CAREFUL else rounds
         anew = fresh
         for _ in range(rounds):
@@ -204,13 +202,12 @@ class Problem(Slopes):
                     break
                 damping *= 8.0
             if before - cost <= accuracy * before:
-                far = [j for j in guessed if abs(x[j] - taken[j]) > FAR]
                 if not far or not looks:
                     break
                 # an end is one only by derivatives that were taken near it
                 looks -= 1
                 taken[far] = x[far]
-                anew = [*fresh, *far]
+                anew, far = [*fresh, *far], []
         return Fit(self.unpack(model, x), left, slope, cost)
 
     def _computed(self, model: Model, x: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:

@@ -126,7 +126,7 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     lengths = [r.end - r.start for r in recordings]
     total = min(sum(lengths), max(FITTED, *lengths))
     channel = motor_channels(instrument)[0]
-    sampling = max(float(np.median(np.diff(r[channel].time))) for r in recordings)
+    sampling = max(r[channel].sampling for r in recordings)
     wished = max(SHORTEST_BIN, total / BINS, sampling)
     return sampling * round(wished / sampling)
 
@@ -176,8 +176,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
             if not d.by_torque
         ),
         sampling=max(
-            float(np.median(np.diff(recording[name].time)))
-            for name in (*known, *(m.sensor.channel for m in measured))
+            recording[name].sampling for name in (*known, *(m.sensor.channel for m in measured))
         ),
     )
 
@@ -192,7 +191,7 @@ def _motion(
     channel: Channel, sensor: Sensor, start: float, period: float, bins: int
 ) -> FloatArray:
     """Return the smoothed motion at the middles of the bins."""
-    sampling = float(np.median(np.diff(channel.time)))
+    sampling = channel.sampling
     grid: FloatArray = start + sampling * np.arange(
         round(bins * period / sampling) + 1, dtype=np.float64
     )

@@ -58,6 +58,11 @@ class Unknowns(Residuals):
         weight[len(weight) - len(self.tolerances) :] *= counted
         return weight
 
+    def still(self, model: Model) -> NDArray[np.bool_]:
+        """Return which unknowns do not move: tolerances that a cause owns, shape (unknowns,)."""
+        own = sum(map(len, model.z)) + len(model.bristle)
+        return np.array([False] * own + self.owned(model))
+
     def labels(self, model: Model) -> list[str]:
         """Return a name for each unknown that holds in any model which has it."""
         own = [

@@ -19,6 +19,7 @@ from tendon_ros.report.diagnosis_words import (
     percent,
     place_words,
     scale,
+    sized,
     with_interval,
     with_unit,
 )
@@ -194,10 +195,7 @@ def _by_recording(evidence: Evidence) -> Section:
 
 def _told(told: Told) -> str:
     """Return a size with its interval, or why there is none."""
-    if told.why:
-        return told.why
-    value, interval = with_interval(told.value, told.ci95, told.unit)
-    return f'{value} ({interval})'
+    return told.why or sized(told.value, told.ci95, told.unit)
 
 
 def _basis(evidence: Evidence) -> Section:

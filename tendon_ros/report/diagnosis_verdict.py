@@ -17,7 +17,7 @@ from tendon_ros.report.diagnosis_words import (
     percent,
     place_words,
     scale,
-    with_interval,
+    sized,
 )
 
 #: the verdict as a label
@@ -179,12 +179,10 @@ def sizes(cause: Cause) -> str:
     :param cause: an effect that was found.
     :return: plain text; empty where it has none.
     """
-    values = []
-    for name, found in cause.parameters.items():
-        value, interval = with_interval(found.value, found.ci95, found.unit)
-        yes_or_no = found.ci95[0] == found.ci95[1]
-        values.append(f'{name} {value}' if yes_or_no else f'{name} {value} ({interval})')
-    return ', '.join(values)
+    return ', '.join(
+        f'{name} {sized(found.value, found.ci95, found.unit)}'
+        for name, found in cause.parameters.items()
+    )
 
 
 def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:

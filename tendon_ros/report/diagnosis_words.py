@@ -126,6 +126,19 @@ def with_interval(value: float, ci95: tuple[float, float], unit: str) -> tuple[s
     return f'{texts[0]}{_BLANK}{shown}'.strip(), f'{texts[1]} … {texts[2]}'
 
 
+def sized(value: float, ci95: tuple[float, float], unit: str) -> str:
+    """
+    Return a value with its unit and its interval; a yes or no has none.
+
+    :param value: in ``unit``.
+    :param ci95: in ``unit``; may be infinite.
+    :param unit: SI unit.
+    :return: such as ``1.0 N (0.8 … 1.2)``.
+    """
+    said, interval = with_interval(value, ci95, unit)
+    return said if ci95[0] == ci95[1] else f'{said} ({interval})'
+
+
 def count(n: int, thing: str) -> str:
     """Return a number of things: 1 channel, 2 channels."""
     return f'{n} {thing}' if n == 1 else f'{n} {thing}s'

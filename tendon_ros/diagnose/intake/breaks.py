@@ -9,7 +9,6 @@ import numpy as np
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.intake.motion import STILL
-from tendon_ros.diagnose.intake.step import sampling
 
 GAP = 8.0  # usual spacings
 SHORT_GAP = 0.03  # [s] that interpolation bridges whatever the sampling
@@ -46,7 +45,7 @@ def missing_share(channel: Channel) -> float:
     :return: share of those that there should be, gaps not counted.
     """
     step = np.diff(channel.time)
-    usual = sampling(channel.time)
+    usual = channel.sampling
     small = step[step <= max(GAP * usual, SHORT_GAP)]
     lost = float(np.sum(np.rint(small / usual) - 1.0))
     return max(0.0, lost / (lost + step.size))
@@ -54,7 +53,7 @@ def missing_share(channel: Channel) -> float:
 
 def _gaps(channel: Channel) -> Iterator[Break]:
     time, value = channel.time, channel.value
-    usual = sampling(time)
+    usual = channel.sampling
     for n in np.flatnonzero(np.diff(time) > max(GAP * usual, SHORT_GAP)).tolist():
         gap = float(time[n + 1] - time[n])
         moved = abs(float(value[n + 1] - value[n]))
@@ -74,7 +73,7 @@ def _gaps(channel: Channel) -> Iterator[Break]:
 def _leaps(channel: Channel) -> Iterator[Break]:
     time = channel.time
     leap = np.abs(np.diff(channel.value))
-    usual = sampling(time)
+    usual = channel.sampling
     beside = np.maximum(np.append(0.0, leap[:-1]), np.append(leap[1:], 0.0))
     for n in np.flatnonzero(leap > np.maximum(STILL, LEAP * beside)).tolist():
         if time[n + 1] - time[n] > GAP * usual or not AROUND <= n < leap.size - AROUND:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from tendon_ros.base.recording import Channel, FloatArray, Recording
+from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
@@ -52,16 +50,6 @@ def without(recording: Recording, names: Container[str]) -> Recording:
     """
     kept = {name: c for name, c in recording.channels.items() if name not in names}
     return replace(recording, channels=kept)
-
-
-def sampling(time: FloatArray) -> float:
-    """
-    Return the usual spacing of stamps.
-
-    :param time: [s], shape (n,), n > 1.
-    :return: [s].
-    """
-    return float(np.median(np.diff(time)))
 
 
 def shared_span(recording: Recording, names: Iterable[str]) -> tuple[float, float]:

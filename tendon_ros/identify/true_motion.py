@@ -1,0 +1,69 @@
+"""What truly drove a rig: measured motions and torques, without what effects make of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.identify.segment import Segment
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.numbers import Numbers
+from tendon_ros.model.signals import Signals
+
+FloatArray = NDArray[np.float64]
+
+
+def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> Signals:
+    """
+    Return what drove the rig: motions that encoders saw and torques that motors reported, mended.
+
+    :param instrument: the network.
+    :param numbers: after its effects.
+    :param segment: what was measured.
+    :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.
+    """
+    motion = segment.motion
+    value, slope = motion.value, motion.slope
+    start = 0.0
+    for row, pulley in enumerate(segment.prescribed):
+        for q, sensor in enumerate(instrument.sensors):
+            if sensor.kind != 'angle' or sensor.of != pulley:
+                continue
+            gain, offset = numbers['sensor_gain'][q], numbers['sensor_offset'][q]
+            late = numbers['sensor_delay'][q]
+            if gain != 1.0 or offset != 0.0 or late != 0.0:
+                value, slope = value.copy(), slope.copy()
+                if late != 0.0:
+                    value[row] = _earlier(value[row], late / motion.step)
+                    slope[row] = _earlier(slope[row], late / motion.step)
+                value[row] = (value[row] - offset) / gain
+                slope[row] = slope[row] / gain
+            break
+    for row, pulley in enumerate(segment.pushed, start=len(segment.prescribed)):
+        motors = [j for j, m in enumerate(instrument.motors) if m.pulley == pulley]
+        for j in motors:
+            gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
+            limit = numbers['motor_limit'][j]
+            given = gain * value[row] + bias
+            value, slope = value.copy(), slope.copy()
+            value[row] = np.clip(given, -limit, limit)
+            slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
+    return Signals(value, slope, start, motion.step)
+
+
+def _earlier(value: FloatArray, steps: float) -> FloatArray:
+    """
+    Return what is sampled evenly, by a part of a step or by several earlier.
+
+    A shift of phases leaves the noise of the motion as large as it is. Interpolation would take
+    some of it away, and half a bin of delay would explain that in any recording.
+    """
+    n = len(value)
+    ends = value[0] + (value[-1] - value[0]) * np.linspace(0.0, 1.0, n)
+    rest = value - ends
+    # odd about both ends: what repeats itself has no jumps
+    waves = np.fft.rfft(np.concatenate([rest, -rest[-2:0:-1]]))
+    waves *= np.exp(2j * np.pi * np.fft.rfftfreq(2 * n - 2) * steps)
+    slope = (value[-1] - value[0]) / (n - 1)
+    found: FloatArray = np.fft.irfft(waves, 2 * n - 2)[:n] + ends + steps * slope
+    return found
