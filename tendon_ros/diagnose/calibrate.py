@@ -22,10 +22,11 @@ from tendon_ros.diagnose.intervals import parameter_intervals
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
-from tendon_ros.identify.candidate import Candidate, magnitude
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BRISTLE, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.magnitude import Magnitude, magnitude_of
 from tendon_ros.model.instrument import EffectUse, Instrument
 
 #: [s] from the beginning that are tried
@@ -105,7 +106,7 @@ def calibrate(
         ready.problem,
         fitted,
         [use for use in rest if is_bristle(use)],
-        magnitude(intake.recordings, plain),
+        magnitude_of(intake.recordings, plain),
     )
     if not start.causes and not ready.problem.tolerances:
         raise RecordingError(
@@ -153,7 +154,7 @@ def _start(
     problem: Problem,
     effects: Sequence[EffectUse],
     bristles: Sequence[EffectUse],
-    magnitude: float,
+    magnitude: Magnitude,
 ) -> Model:
     """Return the model that the file is."""
     model = problem.empty

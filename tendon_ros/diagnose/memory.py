@@ -20,6 +20,7 @@ from tendon_ros import __version__
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.magnitude import Magnitude
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_text import text_of
 
@@ -96,7 +97,7 @@ class Memory:
 
 
 def _candidate(
-    effect: str, place: str, only: str, given: Sequence[Sequence[Any]], magnitude: float
+    effect: str, place: str, only: str, given: Sequence[Sequence[Any]], magnitude: Sequence[float]
 ) -> Candidate:
     known = tuple((str(n), float(v)) for n, v in given)
-    return Candidate(effect, place, only, known, float(magnitude))
+    return Candidate(effect, place, only, known, Magnitude(*map(float, magnitude)))

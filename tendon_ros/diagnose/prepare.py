@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.enough import enough, KEPT
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
+from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import loosest, Rollouts
 from tendon_ros.identify.segment import (
-    bin_length,
     loaded,
     Segment,
     segment_of,

@@ -30,8 +30,9 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
-from tendon_ros.identify.candidate import Candidate, everyone, magnitude
+from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
+from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
 
 Report = Callable[[str, float], None]
@@ -82,7 +83,7 @@ def diagnose(
     ready = prepared(intake.recordings, instrument, jobs)
     measured = {name for r in intake.recordings for name in r.channels}
     candidates = everyone(
-        instrument, sorted(measured), withhold, magnitude(intake.recordings, instrument)
+        instrument, sorted(measured), withhold, magnitude_of(intake.recordings, instrument)
     )
     ready, found = _searched(ready, candidates, jobs, report, memory)
     problem = ready.problem

@@ -6,20 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
-import numpy as np
-
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.parameter import Parameter
-from tendon_ros.base.recording import Recording
 from tendon_ros.effects import catalogue, find
 from tendon_ros.identify.coordinates import Coordinates
+from tendon_ros.identify.magnitude import Magnitude, TYPICAL
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
 
 Values = Mapping[str, float]
-
-LARGEST = 200.0  # typical sizes that a fit tries
-TYPICAL_TORQUE = 5.0  # [N m] of motors, most of the time no more, that typical sizes suit
 
 
 @dataclass(frozen=True, order=True)
@@ -29,23 +24,22 @@ class Candidate:
 
     What happens at a time (a slip, a push) happens in one recording, or in each at its own.
     ``given``: what the instrument file says of this effect at this place. The candidate then
-    stands instead of it: that the file is wrong about the effect. ``magnitude``: how many times
-    as large as typical the forces of the instrument are.
+    stands instead of it: that the file is wrong about the effect. ``magnitude``: how large the
+    forces of the instrument are.
     """
 
     effect: str
     place: str
     only: str = ''
     given: tuple[tuple[str, float], ...] = ()
-    magnitude: float = 1.0
+    magnitude: Magnitude = TYPICAL
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The effect's parameters, seen from what is given, but for what only a guess opens."""
         known = dict(self.given)
-        own = [
-            _sized(p, self.magnitude) for p in find(self.effect).parameters if p.search != 'guess'
-        ]
+        effect = find(self.effect)
+        own = [self.magnitude.sized(p) for p in effect.parameters if p.search != 'guess']
         if all(known.get(p.name, p.neutral) == p.neutral for p in own if not p.is_shape):
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
@@ -89,16 +83,6 @@ class Candidate:
         return self.only in ('', segment)
 
 
-def _sized(parameter: Parameter, magnitude: float) -> Parameter:
-    """Return a parameter, forces as large as the instrument's, within what a fit may try."""
-    if not parameter.unit.startswith('N') or parameter.is_shape:
-        return parameter
-    typical = magnitude * parameter.typical
-    reach = LARGEST * abs(typical)
-    low, high = max(parameter.low, -reach), min(parameter.high, reach)
-    return replace(parameter, typical=typical, low=low, high=high)
-
-
 def _seen_from(parameter: Parameter, value: float) -> Parameter:
     """Return a parameter whose value in the file is what changes nothing."""
     if parameter.is_shape:
@@ -108,29 +92,11 @@ def _seen_from(parameter: Parameter, value: float) -> Parameter:
     return replace(parameter, neutral=value, typical=typical)
 
 
-def magnitude(recordings: Sequence[Recording], instrument: Instrument) -> float:
-    """
-    Return how many times as large as typical the forces of an instrument are.
-
-    :param recordings: of it.
-    :param instrument: its file.
-    :return: by the largest of its motors; 1 for all that are not larger than typical.
-    """
-    channels = [s.channel for s in instrument.sensors if s.kind == 'motor_torque']
-    torques = [
-        float(np.quantile(np.abs(r[name].value), 0.95))
-        for r in recordings
-        for name in channels
-        if name in r
-    ]
-    return max(1.0, max(torques, default=0.0) / TYPICAL_TORQUE)
-
-
 def everyone(
     instrument: Instrument,
     measured: Sequence[str],
     withheld: Sequence[str] = (),
-    magnitude: float = 1.0,
+    magnitude: Magnitude = TYPICAL,
 ) -> tuple[Candidate, ...]:
     """
     Return all candidates of an instrument.
@@ -138,7 +104,7 @@ def everyone(
     :param instrument: the network.
     :param measured: channels that were measured; effects on sensors that were not are left out.
     :param withheld: effects that are not to be considered, ``EFFECT`` or ``EFFECT@PLACE``.
-    :param magnitude: how many times as large as typical the instrument's forces are.
+    :param magnitude: how large the instrument's forces are.
     :return: the candidates, in the catalogue's order; an effect that the file has at a place may
         be another one there, unless the file says how well it is known: then it moves with all
         other numbers, and is no cause.

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.identify.driving import drives, motor_channels
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.smoothing import at_rest, smoothed
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
@@ -23,10 +23,8 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-BINS = 20_000  # bins of what is fitted together: minutes of data are seen more coarsely
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
-SHORTEST_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 
@@ -115,22 +113,6 @@ class Segment:
         return replace(self, measured=tuple(changed))
 
 
-def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float:
-    """
-    Return the length of a bin that suits all recordings.
-
-    :param recordings: what was measured.
-    :param instrument: the network.
-    :return: [s], a few samples where sampling is fast, more than one where there is much data.
-    """
-    lengths = [r.end - r.start for r in recordings]
-    total = min(sum(lengths), max(FITTED, *lengths))
-    channel = motor_channels(instrument)[0]
-    sampling = max(r[channel].sampling for r in recordings)
-    wished = max(SHORTEST_BIN, total / BINS, sampling)
-    return sampling * round(wished / sampling)
-
-
 def segment_of(instrument: Instrument, recording: Recording, period: float) -> Segment:
     """
     Return a recording as a segment; contacts and noise are settled by the caller.
@@ -187,14 +169,20 @@ def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatAr
     return np.asarray(channel.at(middles), dtype=np.float64)
 
 
-def _motion(
-    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
+def motion_of(
+    channel: Channel, sensor: Sensor, start: float, sampling: float, samples: int
 ) -> FloatArray:
-    """Return the smoothed motion at the middles of the bins."""
-    sampling = channel.sampling
-    grid: FloatArray = start + sampling * np.arange(
-        round(bins * period / sampling) + 1, dtype=np.float64
-    )
+    """
+    Return the smoothed motion that an encoder saw.
+
+    :param channel: what was read.
+    :param sensor: its resolution and noise.
+    :param start: time of the first angle [s].
+    :param sampling: time between angles [s].
+    :param samples: how many.
+    :return: shape (samples,).
+    """
+    grid: FloatArray = start + sampling * np.arange(samples, dtype=np.float64)
     nearest = np.clip(np.searchsorted(channel.time, grid), 1, len(channel.time) - 1)
     gap = np.minimum(
         np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
@@ -202,9 +190,17 @@ def _motion(
     error = reading_error(channel, sensor)
     known = sensor.resolution > 0.0 or sensor.noise > 0.0
     count = sensor.resolution if known else error * np.sqrt(12.0)
-    angle = smoothed(channel.at(grid), gap < 1.5 * sampling, error, count)
-    middles = start + period * (np.arange(bins) + 0.5)
-    found: FloatArray = np.interp(middles, grid, angle)
+    return smoothed(channel.at(grid), gap < 1.5 * sampling, error, count)
+
+
+def _motion(
+    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
+) -> FloatArray:
+    """Return the smoothed motion at the middles of the bins."""
+    sampling = channel.sampling
+    angle = motion_of(channel, sensor, start, sampling, round(bins * period / sampling) + 1)
+    middles = period * (np.arange(bins) + 0.5)
+    found: FloatArray = np.interp(middles, sampling * np.arange(len(angle)), angle)
     return found
 
 

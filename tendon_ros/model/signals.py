@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True)
 class Signals:
     """
-    Cubic Hermite signals on one uniform grid, ends held.
+    Cubic Hermite signals on one uniform grid, held before the first sample and after the last.
 
     ``value`` and ``slope``: shape (signals, samples), the slope per second; ``start`` and ``step``
     [s] place the grid.

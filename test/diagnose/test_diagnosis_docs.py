@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.cli.verb_diagnose import WHAT_IS_HERE
 from tendon_ros.diagnose import prepare, search, session
 from tendon_ros.diagnose.result import Verdict
-from tendon_ros.identify import segment, tolerance
+from tendon_ros.identify import binning, segment, tolerance
 
 PAGE = (Path(__file__).parents[2] / 'docs' / 'diagnosis.md').read_text()
 TEXT = ' '.join(PAGE.split())
@@ -17,7 +17,7 @@ TEXT = ' '.join(PAGE.split())
 @pytest.mark.parametrize(
     'words',
     [
-        f'bins of {1000.0 * segment.SHORTEST_BIN:g} ms',
+        f'bins of {1000.0 * binning.USUAL_BIN:g} ms',
         f'first {segment.SETTLING:g} s',
         f'a standard deviation of {100.0 * tolerance.MEASURED:g} %',
         f'dampings of {100.0 * tolerance.DAMPING:g} %',

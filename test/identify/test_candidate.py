@@ -10,9 +10,9 @@ from tendon_ros.identify.candidate import (
     Candidate,
     check_withheld,
     everyone,
-    magnitude,
     starts,
 )
+from tendon_ros.identify.magnitude import magnitude_of, TYPICAL
 from tendon_ros.model.numbers import place_index
 
 
@@ -58,17 +58,17 @@ def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
         for name, c in sound_run.channels.items()
         if name.endswith('/effort')
     ]
-    large = magnitude([sound_run.with_channels(louder)], bench)
-    assert magnitude([sound_run], bench) == 1.0
-    assert large > 1.5
+    large = magnitude_of([sound_run.with_channels(louder)], bench)
+    assert magnitude_of([sound_run], bench) == TYPICAL
+    assert large.force > 1.5
     [one] = [
         c
         for c in everyone(bench, sorted(sound_run.channels), (), large)
         if (c.effect, c.place) == ('stribeck_friction', 'pulley_3')
     ]
-    small = replace(one, magnitude=1.0)
+    small = replace(one, magnitude=TYPICAL)
     for was, now in zip(small.parameters, one.parameters, strict=True):
-        times = large if was.unit == 'N m' else 1.0
+        times = large.force if was.unit == 'N m' else 1.0
         assert (now.typical, now.high) == pytest.approx((times * was.typical, times * was.high))
 
 

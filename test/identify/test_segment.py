@@ -7,7 +7,8 @@ import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.identify.segment import bin_length, loaded, reading_error, segment_of
+from tendon_ros.identify.binning import bin_length
+from tendon_ros.identify.segment import loaded, reading_error, segment_of
 from tendon_ros.model.instrument_file import load_instrument
 
 ANGLE, TORQUE = 'actuator/pulley_body/position', 'actuator/pulley_body/effort'

@@ -15,6 +15,9 @@ from tendon_ros.model.kernel.structure import (
     WIDTH, WINDINGS, WOUND, elongation_law, tension_law, winding_law,
 )  # fmt: skip
 
+#: part of a sample by which a motion's last one may be missed
+NEARLY = 1e-6
+
 
 def clipped(value: float, low: float, high: float) -> float:
     """Return the value, no less than low and no more than high."""
@@ -30,9 +33,10 @@ def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
     to = at + rows * samples
     if u < 0.0:
         return s[at], 0.0, 0.0
-    if u >= samples - 1:
+    # at its last sample a motion has not stopped
+    if samples == 1 or u > samples - 1 + NEARLY:
         return s[at + samples - 1], 0.0, 0.0
-    cell = int(u)
+    cell = min(int(u), samples - 2)
     u -= cell
     a = s[at + cell]
     p = s[to + cell] / s[1]
