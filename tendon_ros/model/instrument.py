@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,12 +80,18 @@ class Coupling:
 
 @dataclass(frozen=True)
 class Controller:
-    """PID on a motor's encoder: gains [N m/rad], [N m/(rad s)], [N m s/rad]; ``limit`` [N m]."""
+    """
+    PID on a motor's encoder: gains [N m/rad], [N m/(rad s)], [N m s/rad]; ``limit`` [N m].
+
+    ``derivative``: whether ``kd`` acts on the error's rate, or brakes by the reading's alone, as
+    the speed loop within a position loop does.
+    """
 
     kp: float
     ki: float
     kd: float
     limit: float
+    derivative: Literal['error', 'reading'] = 'error'
 
 
 @dataclass(frozen=True)

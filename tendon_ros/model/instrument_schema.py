@@ -111,6 +111,7 @@ class ControllerSection(Section):
     ki: Annotated[float, quantity('N*m/(rad*s)', 'not negative')] = 0.0
     kd: Annotated[float, quantity('N*m*s/rad', 'not negative')] = 0.0
     limit: Annotated[float, quantity('N*m', 'positive')]
+    derivative: Literal['error', 'reading'] = 'error'
 
 
 class EncoderSection(Section):

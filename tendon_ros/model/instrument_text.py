@@ -164,6 +164,7 @@ def _motor(motor: Motor, sensors: dict[str, Sensor], known: _Known) -> Document:
             'ki': written(gains.ki, 'N*m/(rad*s)'),
             'kd': written(gains.kd, 'N*m*s/rad'),
             'limit': written(gains.limit, 'N*m'),
+            **({} if gains.derivative == 'error' else {'derivative': gains.derivative}),
         },
         **({} if motor.gear_ratio == 1.0 else {'gear_ratio': motor.gear_ratio}),
         **_unless(0.0, rotor_inertia=(motor.rotor_inertia, 'kg*m^2')),

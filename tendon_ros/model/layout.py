@@ -181,6 +181,7 @@ class _Packer:
         for j, motor in enumerate(one.motors):
             for name in ('kp', 'ki', 'kd', 'limit'):
                 m[at[name.upper()] + j] = getattr(motor.controller, name)
+            m[at['AHEAD'] + j] = float(motor.controller.derivative == 'error')
         m[at['PERIOD']] = one.control_period
         m[at['TOLERANCE']] = tolerance
         m[at['STILL']] = 1e-3

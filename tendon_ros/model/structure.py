@@ -36,7 +36,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'CURVE_START': 'M', 'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
         'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
         'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U', 'KP': 'U',
-        'KI': 'U', 'KD': 'U', 'LIMIT': 'U', 'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q',
+        'KI': 'U', 'KD': 'U', 'AHEAD': 'U', 'LIMIT': 'U', 'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q',
         'SENSOR_DELAY': 'Q', 'SENSOR_RESOLUTION': 'Q', 'SENSOR_NOISE': 'Q', 'PERIOD': '1',
         'TOLERANCE': '1', 'STILL': '1',
     },

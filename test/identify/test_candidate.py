@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tendon_ros.base.errors import TendonError
+from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.effects import catalogue, find
 from tendon_ros.identify.candidate import (
     Candidate,
@@ -13,6 +15,7 @@ from tendon_ros.identify.candidate import (
     starts,
 )
 from tendon_ros.identify.magnitude import magnitude_of, TYPICAL
+from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.numbers import place_index
 
 
@@ -70,6 +73,28 @@ def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
     for was, now in zip(small.parameters, one.parameters, strict=True):
         times = large.force if was.unit == 'N m' else 1.0
         assert (now.typical, now.high) == pytest.approx((times * was.typical, times * was.high))
+
+
+def test_a_strong_and_slow_machine_may_have_much_damping():
+    time = np.arange(0.0, 10.0, 0.01)
+    axis = load_instrument('single_body')
+    angle, effort = (f'actuator/pulley_body/{name}' for name in ('position', 'effort'))
+    # a carriage of a hundred kilograms: a metre is a radian
+    run = Recording(
+        'carriage',
+        {
+            angle: Channel(angle, time, 0.1 * np.sin(time)),
+            effort: Channel(effort, time, 100.0 * np.cos(time)),
+        },
+    )
+    large = magnitude_of([run], axis)
+    everything = everyone(axis, [angle, effort], (), large)
+    [damping] = next(c for c in everything if c.effect == 'viscous_friction').parameters
+    assert large.force == pytest.approx(20.0, rel=0.01)
+    assert damping.high > 1000.0, 'all of the torque may be damping'
+    # what never moves tells nothing of dampings
+    still = Recording('still', {effort: run[effort], angle: Channel(angle, time, 0.0 * time)})
+    assert magnitude_of([still], axis).damping == large.force
 
 
 @pytest.mark.parametrize(

@@ -365,7 +365,7 @@ def test_bench_rig_is_the_bench_of_the_practice_bags(practice):
     )
     sensors = {s.name: s for s in rig.sensors}
     for motor in rig.motors:
-        assert vars(motor.controller) == bench['controller']
+        assert vars(motor.controller) == {**bench['controller'], 'derivative': 'error'}
         encoder = sensors[f'encoder_{motor.name}']
         assert encoder.resolution == 2 * math.pi / bench['sensors']['motor_counts']
         assert sensors[f'torque_{motor.name}'].noise == bench['sensors']['torque_noise']

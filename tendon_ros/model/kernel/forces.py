@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from tendon_ros.model.kernel.loops import clipped, pull, smooth, wind
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ACTIVE, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
+    ACCELERATION, ACTIVE, AHEAD, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
     BUDGET_W, COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON,
     CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING,
     DRIVE, DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, GEARED, INERTIA,
@@ -151,7 +151,9 @@ def drive(m: Floats, d: Ints, w: Floats, s: Floats, c: Floats, t: float, at: int
         z = d[INTEGRAL + j]
         error = value - w[at + i]
         wish = (
-            m[KP + j] * error + m[KI + j] * w[at + 2 * N + z] + m[KD + j] * (slope - w[at + N + i])
+            m[KP + j] * error
+            + m[KI + j] * w[at + 2 * N + z]
+            + m[KD + j] * (m[AHEAD + j] * slope - w[at + N + i])
         )
         torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
         c[COMMAND + j] = torque

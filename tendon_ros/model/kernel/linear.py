@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from tendon_ros.model.kernel.loops import smooth
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ACTIVE, ARM, BAND, BUDGET_L, BUDGET_W, CHI, CONTACT_ARM, CONTACT_PULLEY,
+    ACCELERATION, ACTIVE, AHEAD, ARM, BAND, BUDGET_L, BUDGET_W, CHI, CONTACT_ARM, CONTACT_PULLEY,
     CONTACT_RATIO, DRIVE, FOLLOW, FORCE_Q, FORCE_V, Floats, GEARED, INERTIA, INTEGRAL, Ints,
     J_A, J_ANGLE, J_ARM, J_B, J_CONTACT, J_CONTACT_RATE, J_GRIP, J_LOOP, J_LOOP_RATE, J_PRESS,
     J_RADIUS, J_S, J_SPEED, J_T, J_TOTAL, J_Z, K, KAPPA, KD, KP, LOAD_T, LOAD_W, LOAD_WAY,
@@ -92,7 +92,7 @@ def outer(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> None:
         z = d[INTEGRAL + j]
         if z >= 0 and w[STATE_A + z] != 0.0:  # a saturated controller has no derivative
             _, slope, second = smooth(s, d[REFERENCE + j], t)
-            push = m[KP + j] * slope + m[KD + j] * second
+            push = m[KP + j] * slope + m[KD + j] * m[AHEAD + j] * second
             w[OUTER + N + MOTOR_PULLEY[j]] += m[MOTOR_GAIN + j] * push
             w[OUTER + 2 * N + z] += slope
     for k in range(M):

@@ -7,7 +7,7 @@ from tendon_ros.model.kernel.forces import evaluate, prescribe
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
+    ACCELERATION, AHEAD, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
     Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
     MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, Q, READING,
     REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
@@ -160,12 +160,14 @@ def control(
         i = MOTOR_PULLEY[j]
         if d[REFERENCE + j] >= 0 or d[DRIVE + i] == 1:
             continue
-        error = setpoint[o + j] - c[READING + d[ENCODER + j]]
+        reading = c[READING + d[ENCODER + j]]
+        error = setpoint[o + j] - reading
+        ahead = m[AHEAD + j] * setpoint[o + j] - reading
         if c[LAST + j] > 1e300:  # the first tick has no past
-            c[LAST + j] = error
+            c[LAST + j] = ahead
         total = c[SUM + j] + m[PERIOD] * error
-        change_rate = (error - c[LAST + j]) / m[PERIOD]
-        c[LAST + j] = error
+        change_rate = (ahead - c[LAST + j]) / m[PERIOD]
+        c[LAST + j] = ahead
         wish = m[KP + j] * error + m[KI + j] * total + m[KD + j] * change_rate
         torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
         if torque == wish:  # the integral rests while the limit holds

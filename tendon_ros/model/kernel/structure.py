@@ -74,6 +74,7 @@ MOTOR_LIMIT: int
 KP: int
 KI: int
 KD: int
+AHEAD: int  # 1 where the derivative sees the command, too, not the reading alone
 LIMIT: int
 PERIOD: int
 SENSOR_GAIN: int

@@ -1,0 +1,61 @@
+"""Bins are as long as they may be, and no longer than a drive's acceleration allows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.binning import bin_length
+from tendon_ros.model.instrument_file import load_instrument
+
+ANGLE, TORQUE = 'actuator/pulley_body/position', 'actuator/pulley_body/effort'
+INERTIA = 0.01  # of the body [kg m^2]
+
+
+@pytest.fixture(scope='module')
+def rig():
+    body = load_instrument('single_body')
+    pulley = replace(body.pulleys[0], inertia=INERTIA, damping=0.0)
+    fine = tuple(replace(s, resolution=1e-7 * (s.kind == 'angle')) for s in body.sensors)
+    return replace(body, pulleys=(pulley,), sensors=fine)
+
+
+def swinging(frequency, seconds=4.0):
+    """Return a recording of a body that swings, and nothing else."""
+    time = np.arange(0.0, seconds, 1e-3)
+    way = 2.0 * np.pi * frequency
+    angle = 0.1 * np.sin(way * time)
+    torque = -INERTIA * way**2 * angle
+    return Recording(
+        'swinging', {ANGLE: Channel(ANGLE, time, angle), TORQUE: Channel(TORQUE, time, torque)}
+    )
+
+
+def test_fast_motion_has_short_bins(rig):
+    assert bin_length([swinging(1.0)], rig) == pytest.approx(0.008)
+    assert bin_length([swinging(10.0)], rig) == pytest.approx(0.004)
+
+
+def test_the_slowest_motion_does_not_decide(rig):
+    both = [swinging(1.0), swinging(10.0, seconds=5.0)]
+    assert bin_length(both, rig) == pytest.approx(0.004)
+
+
+def test_a_rotor_behind_its_gear_counts(rig):
+    light = replace(rig, pulleys=(replace(rig.pulleys[0], inertia=1e-5),))
+    [motor] = light.motors
+    geared = replace(light, motors=(replace(motor, gear_ratio=30.0, rotor_inertia=1.11e-5),))
+    assert bin_length([swinging(10.0)], light) == pytest.approx(0.008)
+    assert bin_length([swinging(10.0)], geared) == pytest.approx(0.004)
+
+
+def test_no_inertia_is_lost_in_a_bin(rig):
+    problem = prepared([swinging(10.0)], rig).problem
+    [segment] = problem.rollouts.segments
+    [torque] = segment.measured
+    predicted = problem.rollouts.predicted([[]])[0][0]
+    inner = segment.time > 0.25
+    ratio = predicted[inner] @ torque.value[inner] / (predicted[inner] @ predicted[inner])
+    assert ratio == pytest.approx(1.0, abs=0.015)
