@@ -61,6 +61,16 @@ _ANGLES = frozenset(
 Column = Annotated[int, Field(ge=0, strict=True)] | Annotated[str, Field(min_length=1)]
 
 
+def _straight(text: str, target: str) -> str:
+    """Return what to write for a straight axis, if the unit is one of a straight axis."""
+    turned = f'{text} * rad/m' if target.startswith('rad') else f'{text} * m'
+    try:
+        _UNITS.parse_expression(turned).to(target)
+    except Exception:
+        return ''
+    return f'; on a straight axis let 1 rad stand for 1 m: {turned!r}'
+
+
 def factor(text: str, target: str) -> float:
     """
     Return what one of a unit is in another.
@@ -76,7 +86,9 @@ def factor(text: str, target: str) -> float:
         names = {str(name) for name, _ in quantity.unit_items()}
     except Exception as error:
         # pint raises from tokenizer errors to its own kinds, all of which mean the same here.
-        raise ValueError(f'{text!r} is not a unit that converts to {target}') from error
+        raise ValueError(
+            f'{text!r} is not a unit that converts to {target}{_straight(text, target)}'
+        ) from error
     if target.startswith('rad') and not names & _ANGLES:
         raise ValueError(f'{text!r} names no angle; write, say, turn / 4096')
     if not 0.0 < abs(value) < float('inf'):

@@ -176,7 +176,10 @@ def _factor(own: str, unit: str) -> Decimal:
     # An angle is a ratio: N*m*s is as good as N*m*s/rad. But 5 is no angle, and rad/s no rate.
     same = radian == wanted_radian or (radian == 0 and wanted != {} and unit != 'rad/s')
     if powers != wanted or not same:
-        raise ValueError(f'is not in {unit}' if unit != '1' else 'is not a plain number')
+        turning = 'rad' in unit or unit in {'N*m', 'kg*m^2'}
+        straight = turning and {**powers, 'meter': 0} == {**wanted, 'meter': 0} and powers != {}
+        hint = ' (on a straight axis, let 1 rad stand for 1 m)' if straight else ''
+        raise ValueError(f'is not in {unit}{hint}' if unit != '1' else 'is not a plain number')
     # Powers of ten come out of pint with rounding errors in the last bit.
     short = float(f'{factor:.12g}')
     return Decimal(repr(short if abs(short - factor) <= 4e-16 * abs(factor) else factor))
