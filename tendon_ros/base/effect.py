@@ -71,6 +71,7 @@ class Effect:
     ``other(**parameters)``: the name and parameters of a simpler effect that these make it, if
     any. ``holds``: simpler effects that are part of this one, each with the parameters of this
     one that grow by all of the simpler one's only parameter when both are at one place.
+    ``alike(**parameters)``: sizes of effects that together do the same, by name.
     """
 
     id: str
@@ -84,6 +85,7 @@ class Effect:
     by_load: bool = False
     other: Callable[..., tuple[str, dict[str, float]] | None] | None = None
     holds: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    alike: Callable[..., Mapping[str, float]] | None = None
     modify: Callable[..., None] | None = None
     switches: Callable[..., tuple[float, ...]] | None = None
     dissipative: bool = False

@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> None:
     save_instrument(outcome.instrument, folder / 'instrument.yaml')
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
     memory.forget()
-    print(summary(outcome.diagnosis))
+    print(summary(outcome.diagnosis, outcome.evidence.moved))
     print(f'{folder / "report.html"}: the whole of it, with pictures')
 
 

@@ -56,13 +56,18 @@ class Floor:
 
 @dataclass(frozen=True)
 class Moved:
-    """A number of the instrument file that moved within its tolerance: factor or addition."""
+    """
+    A number of the instrument file that moved within its tolerance: factor or addition.
+
+    ``guessed``: the file says that it is no more than a guess.
+    """
 
     place: str
     quantity: str
     value: float
     ci95: tuple[float, float]
     unit: str
+    guessed: bool = False
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import noise_of, unit_of
-from tendon_ros.diagnose.intervals import deviations
+from tendon_ros.diagnose.intervals import number_intervals
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
@@ -100,19 +100,12 @@ def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
     :param final: the fit of what was found.
     :return: the numbers with their intervals.
     """
-    spread = deviations(problem, final)
-    own = len(spread) - len(problem.tolerances)
+    intervals = number_intervals(problem, final)
     owned = problem.owned(final.model)
     return tuple(
-        Moved(
-            t.place,
-            t.quantity,
-            t.axis.value(z),
-            (t.axis.value(z - 2.0 * s), t.axis.value(z + 2.0 * s)),
-            t.axis.unit,
-        )
-        for t, z, s, still in zip(
-            problem.tolerances, final.model.moved, spread[own:], owned, strict=True
+        Moved(t.place, t.quantity, t.axis.value(z), interval, t.axis.unit, t.guessed)
+        for t, z, interval, still in zip(
+            problem.tolerances, final.model.moved, intervals, owned, strict=True
         )
         if not still
     )

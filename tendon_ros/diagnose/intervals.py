@@ -16,6 +16,7 @@ from scipy.stats import t as student
 
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import find
+from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import SUDDEN
 
@@ -27,6 +28,7 @@ SIZE_FORM = 0.02
 #: times as wide as all that: of 171 parameters of published cases that were used up, 87 % lay
 #: within, and 92 % within so much
 WIDER = 1.3
+REACH = WIDER * float(student.ppf(0.975, 20))  # deviations of an interval
 SMALL = 1e-5  # step of a derivative, on an axis
 
 
@@ -87,7 +89,6 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     :return: for each cause, low and high by parameter, in its unit.
     """
     spread = Spread(problem, fit)
-    reach = WIDER * float(student.ppf(0.975, 20))
     found = []
     at = 0
     for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
@@ -104,17 +105,40 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
                     moved = coordinates.values([a + b for a, b in zip(z, step, strict=True)])
                     direction[0, at + j] = (moved[p.name] - value) / SMALL
                 wide = float(np.hypot(spread.along(direction)[0], by_form))
-                ends = value - reach * wide, value + reach * wide
+                ends = value - REACH * wide, value + REACH * wide
                 row[p.name] = max(p.low, ends[0]), min(p.high, ends[1])
                 continue
             direction[0, at + n] = 1.0
-            by_form /= axis.scale * (abs(value) + 1e-30 if axis.log else 1.0)
-            wide = float(np.hypot(spread.along(direction)[0], by_form))
-            ends = axis.value(z[n] - reach * wide), axis.value(z[n] + reach * wide)
-            row[p.name] = (min(*ends, value), max(*ends, value))
+            row[p.name] = _on_axis(axis, z[n], float(spread.along(direction)[0]), by_form)
         at += len(z)
         found.append(row)
     return found
+
+
+def number_intervals(problem: Problem, fit: Fit) -> list[tuple[float, float]]:
+    """
+    Return the 95 % intervals of the numbers of the file that may move.
+
+    :param problem: the data.
+    :param fit: the fit.
+    :return: low and high of each tolerance, in the unit of its axis.
+    """
+    own = fit.slope.shape[1] - len(problem.tolerances)
+    known = deviations(problem, fit)[own:]
+    return [
+        # what laws get wrong pulls at a guess as it does at a size
+        _on_axis(t.axis, z, float(s), SIZE_FORM * abs(t.axis.value(z)) if t.guessed else 0.0)
+        for t, z, s in zip(problem.tolerances, fit.model.moved, known, strict=True)
+    ]
+
+
+def _on_axis(axis: Axis, z: float, deviation: float, by_form: float) -> tuple[float, float]:
+    """Return an interval about a place, of its deviation there and that of its value by form."""
+    value = axis.value(z)
+    own = by_form / (axis.scale * (abs(value) + 1e-30 if axis.log else 1.0))
+    wide = REACH * float(np.hypot(deviation, own))
+    ends = axis.value(z - wide), axis.value(z + wide)
+    return min(*ends, value), max(*ends, value)
 
 
 def _by_form(parameter: Parameter, value: float, form: float) -> float:

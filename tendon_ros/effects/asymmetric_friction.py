@@ -33,6 +33,14 @@ def no_difference(forward: float, backward: float) -> tuple[str, dict[str, float
     return 'coulomb_friction', {'torque': 0.5 * (forward + backward)}
 
 
+def two_at_once(forward: float, backward: float) -> dict[str, float]:
+    """Return the Coulomb friction and the constant torque that are as much, each way."""
+    return {
+        'coulomb_friction': 0.5 * (forward + backward),
+        'torque_bias': 0.5 * abs(forward - backward),
+    }
+
+
 EFFECT = Effect(
     id='asymmetric_friction',
     title='Asymmetric friction',
@@ -62,5 +70,6 @@ EFFECT = Effect(
     dissipative=True,
     form=0.06,
     other=no_difference,
+    alike=two_at_once,
     holds={'coulomb_friction': ('forward', 'backward')},
 )

@@ -15,6 +15,7 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
     effect_words,
+    moved_words,
     number,
     percent,
     place_words,
@@ -215,13 +216,9 @@ def _basis(evidence: Evidence) -> Section:
 
 
 def _moved(moved: Moved) -> tuple[str, str, str, str]:
-    value, interval = with_interval(moved.value, moved.ci95, moved.unit)
-    effect, _, parameter = moved.quantity.partition('.')
-    if parameter:  # of an effect that the file has: the number itself
-        return f'{parameter} of {find(effect).title}', place_words(moved.place), value, interval
-    sign = '' if value.startswith('−') else '+'
-    by = f'× {value}' if moved.unit in ('', '1') else f'{sign}{value}'
-    return moved.quantity, place_words(moved.place), by, interval
+    quantity, by, interval = moved_words(moved)
+    known = ', a guess' if moved.guessed else ''
+    return f'{quantity}{known}', place_words(moved.place), by, interval
 
 
 def _run(diagnosis: Diagnosis, evidence: Evidence) -> Section:

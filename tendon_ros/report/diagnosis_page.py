@@ -34,6 +34,7 @@ from tendon_ros.report.diagnosis_verdict import (
     LABELS,
     overall,
     sizes,
+    together,
     UNIT,
     where_words,
     worth,
@@ -203,6 +204,8 @@ def _card(diagnosis: Diagnosis, cause: Cause) -> Card:
     same = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
     if same:
         blocks.append(Prose(f'These channels cannot tell it from {joined(same)}.'))
+    if both := together(cause):
+        blocks.append(Prose(f'{both[:1].upper()}{both[1:]}.'))
     return Card(effect_words(cause.effect, cause.place), percent(cause.probability), tuple(blocks))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from textwrap import wrap
 
+from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
@@ -13,12 +14,14 @@ from tendon_ros.report.diagnosis_verdict import (
     headline,
     in_floors,
     sizes,
+    together,
     worth,
 )
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     effect_words,
     inside,
+    moved_words,
     number,
     percent,
     place_words,
@@ -27,14 +30,15 @@ from tendon_ros.report.diagnosis_words import (
 
 _WIDTH = 96
 _INDENT = 8
-_PLACES, _CAUSES, _CHANNELS, _NEXT = 3, 4, 6, 2
+_PLACES, _CAUSES, _CHANNELS, _GUESSES, _NEXT = 3, 4, 6, 6, 2
 
 
-def summary(diagnosis: Diagnosis) -> str:
+def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     """
     Return what a terminal shows of a diagnosis: some ten to twenty-five lines.
 
     :param diagnosis: the answer.
+    :param moved: numbers of the file as they were fitted; those that were guesses are told.
     :return: plain text, lines of at most 96 characters, ending in a newline.
     """
     lines = wrap(headline(diagnosis), _WIDTH)
@@ -45,6 +49,7 @@ def summary(diagnosis: Diagnosis) -> str:
     lines += _part('gap', channel_rows(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
+    lines += _guesses([number for number in moved if number.guessed])
     if diagnosis.beside:
         lines += _part('beside', [beside_words(diagnosis)])
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
@@ -61,6 +66,14 @@ def _part(name: str, texts: Sequence[str], more: int = 0) -> list[str]:
         lines.append(f'and {more} more, in the report')
     head = name.ljust(_INDENT)
     return [f'{head if k == 0 else " " * _INDENT}{line}' for k, line in enumerate(lines)]
+
+
+def _guesses(moved: Sequence[Moved]) -> list[str]:
+    texts = []
+    for guess in moved[:_GUESSES]:
+        quantity, by, interval = moved_words(guess)
+        texts.append(f'{quantity} of {place_words(guess.place)} {by} ({interval}), a guess')
+    return _part('file', texts, len(moved) - _GUESSES)
 
 
 def _where(diagnosis: Diagnosis) -> list[str]:
@@ -82,6 +95,8 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
     others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
     if others:
         yield f'  these channels cannot tell it from {", ".join(others)}'
+    if same := together(cause):
+        yield f'  {same}'
     channel, text = worth(diagnosis, cause)
     if channel:
         yield f'  {channel}: {text}'

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 import math
 
+from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.effects import find
 
 _SENSORS = {'torque': 'torque sensor', 'shaft': 'shaft torque sensor', 'speed': 'speed sensor'}
@@ -124,6 +125,22 @@ def with_interval(value: float, ci95: tuple[float, float], unit: str) -> tuple[s
     else:
         texts = [number(end, 3) for end in (factor * value, low, high)]
     return f'{texts[0]}{_BLANK}{shown}'.strip(), f'{texts[1]} … {texts[2]}'
+
+
+def moved_words(moved: Moved) -> tuple[str, str, str]:
+    """
+    Return how far a number of the file has moved.
+
+    :param moved: the number.
+    :return: which it is, what it became or by what it changed, and the interval of that.
+    """
+    value, interval = with_interval(moved.value, moved.ci95, moved.unit)
+    effect, _, parameter = moved.quantity.partition('.')
+    if parameter:  # of an effect that the file has: the number itself
+        return f'{parameter} of {inside(find(effect).title)}', value, interval
+    sign = '' if value.startswith('−') else '+'
+    by = f'×{_BLANK}{value}' if moved.unit in ('', '1') else f'{sign}{value}'
+    return moved.quantity, by, interval
 
 
 def sized(value: float, ci95: tuple[float, float], unit: str) -> str:

@@ -173,6 +173,14 @@ def test_functions_take_the_declared_parameters(effect):
         assert arguments(effect.switches) == names
 
 
+@over_effects
+def test_what_is_alike_exists(effect):
+    if effect.alike:
+        sizes = effect.alike(**effect.typical)
+        assert arguments(effect.alike) == [p.name for p in effect.parameters]
+        assert all(find(name).parameters[0].low <= size for name, size in sizes.items())
+
+
 @over_laws
 def test_law_stands_alone(effect):
     """The kernel joins the laws' sources into one file, where nothing else of theirs exists."""

@@ -241,6 +241,17 @@ def test_asymmetric_friction_tells_directions_apart():
     assert law(0.5, -1.0, 0.0, 0.08, 0.03)[0] == 0.03
 
 
+def test_asymmetric_friction_is_two_effects_at_once():
+    forward, backward = 0.3, 0.1
+    both = catalogue()['asymmetric_friction'].alike(forward, backward)
+    law = catalogue()['asymmetric_friction'].law
+    limits = [law(0.1, side, 0.0, forward, backward)[0] for side in (1.0, -1.0)]
+    # what rubs more forward is pushed backward by the rest of it
+    assert limits == pytest.approx(
+        [both['coulomb_friction'] + way * both['torque_bias'] for way in (1.0, -1.0)]
+    )
+
+
 def test_weight_hangs_where_it_says():
     law = catalogue()['gravity'].law
     torque, by_theta, _ = law(0.4, 0.0, 0.0, 0.1, 0.4)

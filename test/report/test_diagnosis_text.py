@@ -1,7 +1,10 @@
 """The verdict is one sentence with numbers; the terminal gets it with the rest in few lines."""
 
+from dataclasses import replace
+
 import pytest
 
+from tendon_ros.diagnose.result import FittedParameter
 from tendon_ros.report.diagnosis_text import summary
 from tendon_ros.report.diagnosis_verdict import headline, overall, worth
 
@@ -99,3 +102,27 @@ def test_summary_tells_what_is_left_and_what_is_next(case):
     assert 'record\n          pulley/pulley_1/position' in said
     assert 'left out: free: 0.4 s' in said
     assert 'none of the known effects' not in summary(case('no_gap')[0])
+
+
+def test_guesses_are_told_with_what_became_of_them(case):
+    diagnosis, evidence = case('three_causes')
+    [inertia, *_] = evidence.moved
+    text = summary(diagnosis, [replace(inertia, guessed=True), *evidence.moved[1:]])
+    assert 'file    inertia of pulley 3 × 1.021 (0.987 … 1.055), a guess' in text
+    assert '0.994' not in text
+    assert 'a guess' not in summary(diagnosis, evidence.moved)
+
+
+def test_friction_of_each_direction_is_said_as_two_effects_too(case):
+    diagnosis, _ = case('one_cause')
+    sizes = {
+        name: FittedParameter(value=value, unit='N m', ci95=(0.9 * value, 1.1 * value))
+        for name, value in (('forward', 17.0), ('backward', 23.4))
+    }
+    cause = diagnosis.causes[0].model_copy(
+        update={'effect': 'asymmetric_friction', 'parameters': sizes}
+    )
+    text = ' '.join(summary(diagnosis.model_copy(update={'causes': (cause,)})).split())
+    assert (
+        'Coulomb friction of 20 N·m and torque bias of 3.2 N·m together would do the same' in text
+    )
