@@ -50,6 +50,11 @@ class Candidate:
         return tuple(p for p in self.parameters if p.search == 'instant')
 
     @property
+    def switches(self) -> bool:
+        """Whether it is there or not, and has no size."""
+        return any(p.search == 'switch' for p in self.parameters)
+
+    @property
     def scales(self) -> bool:
         """Whether any parameter is a size."""
         return any(not p.is_shape for p in self.parameters)
