@@ -245,8 +245,9 @@ class Search:
             model = model.joined(candidate, candidate.coordinates.values(member.z))
         # sizes and shapes lie along curved valleys: more of them, more steps
         fit = self.problem.fitted(model, self.problem.slopes(state), rounds=12, accuracy=1e-2)
+        model = self._steps.parted(fit)
         fit = self._steps.pruned(
-            found.start, self._steps.settled(fit.model, self.problem.slopes(state))
+            found.start, self._steps.settled(model, self.problem.slopes(state))
         )
         if not state.model.causes:
             fit = self._simplest(found, before, state, proposals, fit)

@@ -30,6 +30,7 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.magnitude import magnitude_of
@@ -161,7 +162,8 @@ def _searched(
         report('looking again: what was taken for noise was not', 0.0)
         ready = again
         found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
-    if surprising(ready, found):
+    # what stands in for something unknown foretells nothing, wherever one looks
+    if surprising(ready, found) and not hopeless(ready.problem, found.start, found.final):
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
         found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()

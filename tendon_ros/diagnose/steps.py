@@ -166,7 +166,9 @@ class Steps:
         :return: with those that are worth having.
         """
         state = self._renamed(state)
-        state = self._parted(state)
+        model = self.parted(state)
+        if model is not state.model:
+            state = self.settled(model, self.problem.slopes(state))
         shared = least_late(self.problem, state.model)
         if shared is not None:
             state = self.settled(state.model.without(shared))
@@ -211,8 +213,13 @@ class Steps:
         model = as_one(model)
         return state if model is state.model else self.settled(model)
 
-    def _parted(self, state: Fit) -> Fit:
-        """Keep of events that happen at once the one that is worth most: they are one."""
+    def parted(self, state: Fit) -> Model:
+        """
+        Keep of events that happen at once the one that is worth most: they are one.
+
+        :param state: with its derivatives.
+        :return: its model, with fewer causes where some happen at once.
+        """
         model = state.model
         order = np.argsort(worths(self.problem, state))
         gone: list[int] = []
@@ -221,9 +228,7 @@ class Steps:
             others = [n for n in range(len(model.causes)) if n != k and n not in gone]
             if any(at_once(own, (model.causes[n], model.values(n))) for n in others):
                 gone.append(k)
-        if not gone:
-            return state
-        return self.settled(model.without(*gone), self.problem.slopes(state))
+        return model.without(*gone) if gone else model
 
 
 def _instead(candidate: Candidate, more: Mapping[str, float]) -> dict[str, float]:
