@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
-from tendon_ros.identify.segment import FITTED, motion_of
+from tendon_ros.identify.segment import FITTED, motion_of, reading_error
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 
@@ -69,8 +69,10 @@ def _missed(recording: Recording, instrument: Instrument, drive: Drive, period: 
     mean: FloatArray = (
         motion(middles + 0.5 * period, 1) - motion(middles - 0.5 * period, 1)
     ) / period
-    inertia = float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)])
     # the ends of a spline know little of what goes on there
-    off = inertia * (seen - mean)[2:-2]
-    torque = recording[torques[0]].value
-    return float(np.sqrt(np.mean(off**2)) / max(float(np.sqrt(np.mean(torque**2))), 1e-12))
+    off = float(np.sqrt(np.mean((seen - mean)[2:-2] ** 2)))
+    if off <= reading_error(channel, drive.sensor) / period**2:
+        return 0.0  # a count makes as much
+    inertia = float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)])
+    torque = float(np.sqrt(np.mean(recording[torques[0]].value ** 2)))
+    return inertia * off / max(torque, 1e-12)

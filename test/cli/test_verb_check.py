@@ -37,4 +37,4 @@ def test_fault_is_one_line_and_status_2(tmp_path, capsys):
     assert main(['check', str(file)]) == 2
     error = capsys.readouterr().err
     assert error.count('\n') == 1
-    assert f"{file}: pulleys.M.inertia: '3 kg' is not in kg*m^2; write" in error
+    assert f"{file}: pulleys.M.inertia: '3 kg' is not in kg*m^2 (on a straight axis" in error
