@@ -66,7 +66,7 @@ def _straight(text: str, target: str) -> str:
     turned = f'{text} * rad/m' if target.startswith('rad') else f'{text} * m'
     try:
         _UNITS.parse_expression(turned).to(target)
-    except Exception:
+    except Exception:  # whatever pint raises, it is no unit of a straight axis
         return ''
     return f'; on a straight axis let 1 rad stand for 1 m: {turned!r}'
 

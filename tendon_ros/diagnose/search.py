@@ -27,7 +27,6 @@ from tendon_ros.diagnose.worth import (
     worthwhile,
 )
 from tendon_ros.effects import find
-from tendon_ros.identify.afar import afar
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -43,8 +42,6 @@ GAINED = 0.8
 #: deviations that a guess, and another number, has to have moved to be suspected of standing for
 #: a cause
 ASTRAY, PRESSED = 0.5, 2.0
-#: part of the cost of numbers fitted from the file's own that others, far from them, must leave
-FARTHER = 0.8
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
 
@@ -84,7 +81,7 @@ class Search:
         """
         found = Found()
         self._steps.report('fitting the tolerances', 0.0)
-        state = self._started()
+        state = self._steps.started()
         found.states.append(state)
         self._steps.report('screening the candidates', 0.03)
         # a first look from here tells later whom to look at more closely
@@ -142,22 +139,6 @@ class Search:
         self._ordered(found)
         return found
 
-    def _started(self) -> Fit:
-        """Return the numbers of the file, fitted, from the file's own or from afar."""
-        near = self._steps.settled(self.problem.empty)
-        far = self._from_afar(self.problem.empty)
-        return near if far is None or far.cost > FARTHER * near.cost else far
-
-    def _from_afar(self, model: Model) -> Fit | None:
-        """Return the best fit of guesses from afar; None where there is no need to."""
-        rough = [
-            self.problem.fitted(begun, rounds=12, accuracy=1e-2)
-            for begun in afar(self.problem, model)
-        ]
-        if not rough:
-            return None
-        return self._steps.settled(min(rough, key=lambda fit: fit.cost).model)
-
     def _without_sign(self, found: Found) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         best: Fit | None = None
@@ -165,7 +146,7 @@ class Search:
             if not candidate.switches:
                 continue
             there = {p.name: p.typical for p in candidate.parameters}
-            fit = self._from_afar(found.start.model.joined(candidate, there))
+            fit = self._steps.from_afar(found.start.model.joined(candidate, there))
             if fit is not None and self._believed(found, found.start, fit):
                 best = self._better(best, fit)
         return best

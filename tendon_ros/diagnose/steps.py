@@ -13,6 +13,7 @@ from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.effects import find
+from tendon_ros.identify.afar import afar
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -30,6 +31,8 @@ CLEAR = 10.0
 FIRST_ORDER_SEES = 0.4
 #: the same of the effect in question at other places
 KIN_SEEN = 0.1
+#: part of the cost of numbers fitted from the file's own that others, far from them, must leave
+FARTHER = 0.8
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -156,6 +159,29 @@ class Steps:
         if known is None and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
             return fit
         return self.problem.fitted(fit.model, rounds=6, accuracy=1e-3)
+
+    def started(self) -> Fit:
+        """
+        Fit the numbers of the file without any cause.
+
+        :return: the fit from the file's own numbers, or from far off where that leaves much less.
+        """
+        near = self.settled(self.problem.empty)
+        far = self.from_afar(self.problem.empty)
+        return near if far is None or far.cost > FARTHER * near.cost else far
+
+    def from_afar(self, model: Model) -> Fit | None:
+        """
+        Fit with guesses that begin far from the file's own.
+
+        :param model: causes.
+        :return: the best fit; None where guesses need not be looked for from afar.
+        """
+        begun = afar(self.problem, model)
+        if not begun:
+            return None
+        rough = self.pool.map(lambda m: self.problem.fitted(m, rounds=12, accuracy=1e-2), begun)
+        return self.settled(min(rough, key=lambda fit: fit.cost).model)
 
     def pruned(self, start: Fit, state: Fit) -> Fit:
         """
