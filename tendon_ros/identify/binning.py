@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
-from tendon_ros.identify.segment import FITTED, motion_of, reading_error
+from tendon_ros.identify.segment import FITTED, motion_of, reading_error, SETTLING
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 
@@ -30,7 +30,7 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     :param recordings: what was measured.
     :param instrument: the network.
     :return: [s], a few samples where sampling is fast, more than one where there is much data;
-        shorter where a drive accelerates so much within a bin that its torque tells.
+        shorter where a drive accelerates so much within a bin that torque and encoder tell.
     :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
     driving = drives(instrument)
@@ -61,18 +61,21 @@ def _missed(recording: Recording, instrument: Instrument, drive: Drive, period: 
     start, sampling = float(channel.time[0]), channel.sampling
     bins = int((float(channel.time[-1]) - start) / period)
     fine = motion_of(channel, drive.sensor, start, sampling, round(bins * period / sampling) + 1)
-    if bins < 4:
+    if period * bins < 2.0 * SETTLING:
         return 0.0
-    motion = CubicSpline(sampling * np.arange(len(fine)), fine)
+    time = sampling * np.arange(len(fine))
+    motion = CubicSpline(time, fine)
     middles = period * (np.arange(bins, dtype=np.float64) + 0.5)
-    seen: FloatArray = CubicSpline(middles, motion(middles))(middles, 2)
-    mean: FloatArray = (
-        motion(middles + 0.5 * period, 1) - motion(middles - 0.5 * period, 1)
-    ) / period
-    # the ends of a spline know little of what goes on there
-    off = float(np.sqrt(np.mean((seen - mean)[2:-2] ** 2)))
-    if off <= reading_error(channel, drive.sensor) / period**2:
-        return 0.0  # a count makes as much
+    coarse = CubicSpline(middles, motion(middles))
+    # the ends of a spline know little of what goes on there, and how it all began counts nowhere
+    inner = (time > SETTLING) & (time < middles[-2])
+    unseen: FloatArray = (coarse(time) - fine)[inner]
+    if np.sqrt(np.mean(unseen**2)) <= reading_error(channel, drive.sensor):
+        return 0.0  # the fine motion knows no better
+    edges = period * np.arange(bins + 1, dtype=np.float64)
+    mean: FloatArray = np.diff(motion(edges, 1)) / period
+    used = (middles > SETTLING) & (middles < middles[-2])
+    off = float(np.sqrt(np.mean((coarse(middles, 2) - mean)[used] ** 2)))
     inertia = float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)])
     torque = float(np.sqrt(np.mean(recording[torques[0]].value ** 2)))
     return inertia * off / max(torque, 1e-12)
