@@ -117,8 +117,8 @@ class Search:
                     proposals = self._steps.screened(screen)
                 grown = self._grown(found, state, screen, proposals)
                 if turn == 0 and self._astray(found.start, grown):
-                    grown = self._better(grown, self._from_the_file(found))
-                    grown = self._better(grown, self._without_sign(found))
+                    others = self._from_the_file(found), self._without_sign(found)
+                    grown = self._better(grown, *others)
                 turn += 1
             if grown is not None:
                 state = grown
@@ -141,24 +141,23 @@ class Search:
 
     def _without_sign(self, found: Found) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
-        best: Fit | None = None
+        fits = []
         for candidate in self._steps.candidates:
-            if not candidate.switches:
-                continue
-            there = {p.name: p.typical for p in candidate.parameters}
-            fit = self._steps.from_afar(found.start.model.joined(candidate, there))
-            if fit is not None and self._believed(found, found.start, fit):
-                best = self._better(best, fit)
-        return best
+            if candidate.switches:
+                there = {p.name: p.typical for p in candidate.parameters}
+                fit = self._steps.from_afar(found.start.model.joined(candidate, there))
+                if fit is not None and self._believed(found, found.start, fit):
+                    fits.append(fit)
+        return self._better(*fits)
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""
         final = found.final
         return hopeless(self.problem, found.start, final) or bool(undoing(self.problem, final))
 
-    def _better(self, one: Fit | None, other: Fit | None) -> Fit | None:
-        """Return the one of two states that leaves less; of two that do alike, the simpler one."""
-        states = [fit for fit in (one, other) if fit is not None]
+    def _better(self, *fits: Fit | None) -> Fit | None:
+        """Return the state that leaves least; of those that do alike, the simplest one."""
+        states = [fit for fit in fits if fit is not None]
         if not states:
             return None
         least = min(states, key=lambda fit: fit.cost)

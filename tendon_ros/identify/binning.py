@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,42 +41,74 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     wished = max(USUAL_BIN, total / BINS, sampling)
     samples = round(wished / sampling)
     longest = max(recordings, key=lambda r: r.end - r.start)
+    motions = [m for d in driving if (m := Driven.of(longest, instrument, d)) is not None]
     while samples > 1 and total / (sampling * (samples // 2)) <= BINS:
-        period = sampling * samples
-        if max(_missed(longest, instrument, d, period) for d in driving) <= MISSED:
+        if all(m.missed(sampling * samples) <= MISSED for m in motions):
             break
         samples //= 2
     return sampling * samples
 
 
-def _missed(recording: Recording, instrument: Instrument, drive: Drive, period: float) -> float:
-    """Return the part of a motor's torque that its inertia makes of what bins do not see."""
-    torques = [
-        s.channel
-        for s in instrument.sensors
-        if s.kind == 'motor_torque' and s.of == drive.motor and s.channel in recording
-    ]
-    if drive.by_torque or not torques:
-        return 0.0
-    channel = recording[drive.sensor.channel]
-    start, sampling = float(channel.time[0]), channel.sampling
-    bins = int((float(channel.time[-1]) - start) / period)
-    fine = motion_of(channel, drive.sensor, start, sampling, round(bins * period / sampling) + 1)
-    if period * bins < 2.0 * SETTLING:
-        return 0.0
-    time = sampling * np.arange(len(fine))
-    motion = CubicSpline(time, fine)
-    middles = period * (np.arange(bins, dtype=np.float64) + 0.5)
-    coarse = CubicSpline(middles, motion(middles))
-    # the ends of a spline know little of what goes on there, and how it all began counts nowhere
-    inner = (time > SETTLING) & (time < middles[-2])
-    unseen: FloatArray = (coarse(time) - fine)[inner]
-    if np.sqrt(np.mean(unseen**2)) <= reading_error(channel, drive.sensor):
-        return 0.0  # the fine motion knows no better
-    edges = period * np.arange(bins + 1, dtype=np.float64)
-    mean: FloatArray = np.diff(motion(edges, 1)) / period
-    used = (middles > SETTLING) & (middles < middles[-2])
-    off = float(np.sqrt(np.mean((coarse(middles, 2) - mean)[used] ** 2)))
-    inertia = float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)])
-    torque = float(np.sqrt(np.mean(recording[torques[0]].value ** 2)))
-    return inertia * off / max(torque, 1e-12)
+@dataclass(frozen=True)
+class Driven:
+    """
+    What a drive did, as finely as its encoder tells.
+
+    ``angle``: by time from the first reading [rad]; ``error`` [rad] of a reading; ``inertia``
+    [kg m^2] by ``torque`` [N m], root mean square of what the motor reported.
+    """
+
+    time: FloatArray
+    angle: CubicSpline
+    error: float
+    inertia: float
+    torque: float
+
+    @classmethod
+    def of(cls, recording: Recording, instrument: Instrument, drive: Drive) -> Driven | None:
+        """
+        Return what a drive did.
+
+        :param recording: what was measured.
+        :param instrument: the network.
+        :param drive: which.
+        :return: the motion; None where it, or the torque, was not measured, or it is too short.
+        """
+        torques = [
+            s.channel
+            for s in instrument.sensors
+            if s.kind == 'motor_torque' and s.of == drive.motor and s.channel in recording
+        ]
+        channel = recording[drive.sensor.channel]
+        seconds = float(channel.time[-1] - channel.time[0])
+        if drive.by_torque or not torques or seconds < 2.0 * SETTLING:
+            return None
+        samples = round(seconds / channel.sampling) + 1
+        time = channel.sampling * np.arange(samples, dtype=np.float64)
+        fine = motion_of(channel, drive.sensor, float(channel.time[0]), channel.sampling, samples)
+        return cls(
+            time,
+            CubicSpline(time, fine),
+            reading_error(channel, drive.sensor),
+            float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)]),
+            float(np.sqrt(np.mean(recording[torques[0]].value ** 2))),
+        )
+
+    def missed(self, period: float) -> float:
+        """
+        Return the part of the torque that the inertia makes of what bins do not see.
+
+        :param period: length of a bin [s].
+        :return: root mean square by root mean square; 0 where the encoder knows no better.
+        """
+        edges = np.arange(0.0, self.time[-1], period)
+        middles = edges[:-1] + 0.5 * period
+        coarse = CubicSpline(middles, self.angle(middles))
+        # the ends of a spline know little of what goes on there; how it all began counts nowhere
+        inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
+        if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= self.error:
+            return 0.0
+        mean: FloatArray = np.diff(self.angle(edges, 1)) / period
+        used = (middles > SETTLING) & (middles < middles[-2])
+        off = float(np.sqrt(np.mean((coarse(middles, 2) - mean)[used] ** 2)))
+        return self.inertia * off / max(self.torque, 1e-12)

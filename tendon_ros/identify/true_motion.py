@@ -24,7 +24,6 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
     """
     motion = segment.motion
     value, slope = motion.value, motion.slope
-    start = 0.0
     for row, pulley in enumerate(segment.prescribed):
         for q, sensor in enumerate(instrument.sensors):
             if sensor.kind != 'angle' or sensor.of != pulley:
@@ -48,7 +47,7 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
             value, slope = value.copy(), slope.copy()
             value[row] = np.clip(given, -limit, limit)
             slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
-    return Signals(value, slope, start, motion.step)
+    return Signals(value, slope, 0.0, motion.step)
 
 
 def _earlier(value: FloatArray, steps: float) -> FloatArray:
