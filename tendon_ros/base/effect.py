@@ -10,12 +10,17 @@ kernel understands: arithmetic, ``abs``, ``min``, ``max``, ``if``, ``math``. The
 ``budget(speed, side, load, *parameters) -> (limit, by_speed, by_load)``
     adds to the largest dry friction of a pulley [N m]; ``speed`` >= 0 [rad/s], ``side`` -1 or 1,
     ``load`` = sum of |radius| * (both tensions) over the loops on the pulley [N m].
-``elongation(delta, rate, z, t, *parameters)
--> (shift, by_delta, by_z, z_rate, by_delta, by_rate, by_z)``
-    adds to a loop's elongation [m]; z is an auxiliary state of order one.
+``elongation(delta, t, *parameters) -> (shift, by_delta)``
+    adds to a loop's elongation [m].
+``relaxation(delta, z, *parameters)
+-> (settled, by_z, fraction, share, z_rate, by_delta, by_z)``
+    takes a fraction of what a loop bears at the elongation ``settled`` [m], which follows the
+    present one; z is an auxiliary state of order one. Of the fraction a ``share`` is taken from
+    the tension and the rest from the elongation: with T the net force, T(delta) becomes
+    share * (T(delta) - fraction * T(settled)) + (1 - share) * T(delta - fraction * settled).
 ``tension(delta, rate, z, t, *parameters)
 -> (force, by_delta, by_rate, by_z, z_rate, by_delta, by_rate, by_z)``
-    adds to a loop's net force [N].
+    adds to a loop's net force [N]; with the same kind of state.
 ``winding(theta, *parameters) -> (arc, by_theta, by_theta_twice)``
     adds to the angle that the cables see [rad].
 
@@ -36,7 +41,7 @@ from tendon_ros.base.parameter import Parameter
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-HOOKS = ('torque', 'budget', 'elongation', 'tension', 'winding')
+HOOKS = ('torque', 'budget', 'elongation', 'relaxation', 'tension', 'winding')
 
 
 class Numbers(Protocol):

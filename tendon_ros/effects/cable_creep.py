@@ -4,21 +4,28 @@ Cable creep: slow relaxation under load.
 A loaded cable, its sheath and its anchors settle: at a held angle the force falls to a lower level
 over seconds, and comes back after unloading.
 
-Equation, with c the part of the elongation that no longer stretches::
+Equation, with T the net force of the loop and s an elongation that follows the present one::
 
-    T = T(delta - c),  dc/dt = (fraction * delta - c) / time
+    T = share * (T(delta) - fraction * T(s)) + (1 - share) * T(delta - fraction * s)
+    ds/dt = (delta - s) / time
 
-On a linear cable this is the standard linear solid: the stiffness falls from K at once to
-K * (1 - fraction) in the long run. The state is z = c / (fraction * 1 mm), so that it is of order
+On a linear cable this is the standard linear solid, whatever the share: the stiffness falls from
+K at once to K * (1 - fraction) in the long run. On a curve that bends it matters what relaxes:
+where strands and fibres yield, every tension by the same fraction (share 1); where sheath and
+anchors give way, the elongation (share 0). The state is z = s / (1 mm), so that it is of order
 one, and exists where the fraction is zero.
 
-A closed cycle never gives power as long as the tension grows with elongation: with x = delta - c,
-and x' the stretch at which c would rest, it takes fraction / time times the integral of
+A closed cycle never gives power as long as the tension grows with elongation. With
+delta = s + time * ds/dt, the tension's part takes fraction * time times the integral of
+T'(s) * (ds/dt)**2 over time. With x = delta - fraction * s, and x' = s * (1 - fraction) the x at
+which s would rest, the elongation's part takes fraction / time times the integral of
 (T(x) - T(x')) * (x - x') over time, and both factors have the same sign.
 
 What is left out: the preload of both cables settles too; give the pretension as it is when used.
+More than one time constant; over seconds to minutes one stands for several within a tenth or two.
 
-Source: Zener's standard linear solid.
+Source: Zener's standard linear solid; for the tension's part the quasi-linear viscoelasticity of
+Fung (Biomechanics, 1981), with the elongation filtered instead of the tension.
 """
 
 from __future__ import annotations
@@ -30,22 +37,24 @@ from tendon_ros.base.parameter import Parameter
 
 
 def cable_creep_law(
-    delta: float, rate: float, z: float, t: float, fraction: float, time: float
+    delta: float, z: float, fraction: float, time: float, share: float
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return the elongation [m] that has relaxed, and the rate of its state, with their slopes."""
+    """Return the elongation [m] that has settled and how it acts, with the rate of its state."""
     scale = 1e-3  # [m], so that the state is of order one
     return (
-        -fraction * scale * z,
-        0.0,
-        -fraction * scale,
+        scale * z,
+        scale,
+        fraction,
+        share,
         (delta / scale - z) / time,
         1.0 / (scale * time),
-        0.0,
         -1.0 / time,
     )
 
 
-def soft_at_once(fraction: float, time: float) -> tuple[str, dict[str, float]] | None:
+def soft_at_once(
+    fraction: float, time: float, share: float
+) -> tuple[str, dict[str, float]] | None:
     """Return the softer cable that it is where it has relaxed before anyone could see it creep."""
     if time > 0.3:
         return None
@@ -75,11 +84,20 @@ EFFECT = Effect(
             high=1e4,
             typical=5.0,
         ),
+        Parameter(
+            name='share',
+            unit='1',
+            meaning='part of it that relaxes as tension; the rest does as elongation',
+            neutral=math.nan,
+            low=0.0,
+            high=1.0,
+            typical=0.5,
+        ),
     ),
-    hook='elongation',
+    hook='relaxation',
     law=cable_creep_law,
     stateful=True,
     dissipative=True,
-    form=0.4,
+    form=0.2,
     other=soft_at_once,
 )

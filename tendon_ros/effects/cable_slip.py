@@ -22,11 +22,9 @@ from tendon_ros.base.effect import Effect
 from tendon_ros.base.parameter import Parameter
 
 
-def cable_slip_law(
-    delta: float, rate: float, z: float, t: float, jump: float, time: float
-) -> tuple[float, float, float, float, float, float, float]:
+def cable_slip_law(delta: float, t: float, jump: float, time: float) -> tuple[float, float]:
     """Return the elongation [m] that the slip has added."""
-    return (jump if t >= time else 0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    return (jump if t >= time else 0.0), 0.0
 
 
 def switches(jump: float, time: float) -> tuple[float, ...]:

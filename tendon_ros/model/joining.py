@@ -25,7 +25,8 @@ PARTS = ('loops', 'forces', 'linear', 'rosenbrock', 'events', 'sensing', 'motion
 CALLS = {
     'torque': ('theta, omega, t', 3),
     'budget': ('speed, side, load', 3),
-    'elongation': ('delta, rate, z, t', 7),
+    'elongation': ('delta, t', 2),
+    'relaxation': ('delta, z', 7),
     'tension': ('delta, rate, z, t', 8),
     'winding': ('theta', 3),
 }

@@ -47,7 +47,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1',
         'ACTIVE': '1', 'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1',
         'SWITCH': '1',
-        'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'TENSIONS': '2', 'WINDINGS': '2',
+        'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'RELAXATIONS': '2',
+        'TENSIONS': '2', 'WINDINGS': '2',
     },
     'w': {
         'EPOCH': '1', 'INPUT': 'N', 'WOUND': 'N', 'TURN': 'N', 'CURL': 'N', 'FOLLOW': 'N',

@@ -20,7 +20,7 @@ def soft(bench, measured_on):
     run = measured_on(bench, softer, touching=True, trajectory='paper_fig12', settings=())
     problem = prepared([run], bench).problem
     start = problem.fitted(problem.empty)
-    model = problem.empty.joined(CREEP, {'fraction': 0.4, 'time': 0.01})
+    model = problem.empty.joined(CREEP, {'fraction': 0.4, 'time': 0.01, 'share': 0.5})
     state = problem.fitted(model, rounds=0)
     return problem, start, replace(state, slope=np.zeros_like(state.slope))
 

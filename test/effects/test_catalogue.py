@@ -21,7 +21,8 @@ SENSORS = {'angle', 'velocity', 'motor_torque', 'contact_force', 'contact_torque
 STATE = {
     'torque': ['theta', 'omega', 't'],
     'budget': ['speed', 'side', 'load'],
-    'elongation': ['delta', 'rate', 'z', 't'],
+    'elongation': ['delta', 't'],
+    'relaxation': ['delta', 'z'],
     'tension': ['delta', 'rate', 'z', 't'],
     'winding': ['theta'],
 }
@@ -113,7 +114,7 @@ def test_declaration(effect):
     assert ('sensor' in effect.kinds) == bool(effect.sensors)
     assert set(effect.sensors) <= SENSORS
     if effect.stateful:
-        assert effect.hook in ('elongation', 'tension')
+        assert effect.hook in ('relaxation', 'tension')
 
 
 @over_effects

@@ -144,8 +144,9 @@ def test_blocked_tip_in_series(bench_rig, linear, sign, force, link):
         assert rows.loop_force[-1, :2] == pytest.approx([exact, exact], rel=1e-6)
 
 
-def test_creep_in_situ_is_a_standard_linear_solid(bench_rig, linear):
-    creep = EffectUse('cable_creep', 'cable_m1', {'fraction': 0.4, 'time': 0.05})
+@pytest.mark.parametrize('share', [0.0, 0.7, 1.0])
+def test_creep_in_situ_is_a_standard_linear_solid(bench_rig, linear, share):
+    creep = EffectUse('cable_creep', 'cable_m1', {'fraction': 0.4, 'time': 0.05, 'share': share})
     rig = replace(linear(bench_rig.five_pulleys()), effects=(creep,))
     angles = np.zeros(5)
     angles[0] = 0.01
@@ -155,6 +156,26 @@ def test_creep_in_situ_is_a_standard_linear_solid(bench_rig, linear):
     delta = 0.03 * 0.01
     right = 17.5e3 * delta * (1.0 - 0.4 * (1.0 - np.exp(-rows.time / 0.05)))
     assert np.abs(rows.loop_force[:, 0] - right).max() < 1e-4 * right[0]
+
+
+def test_creep_takes_tension_or_elongation(bench_rig):
+    """A bent cable that is held keeps its part of the tension, or the tension of its part."""
+    angles = np.zeros(5)
+    angles[0] = 0.02
+    held = {}
+    for name, part, share in [('all', 0.0, 0.0), ('elongation', 0.4, 0.0), ('tension', 0.4, 1.0)]:
+        creep = EffectUse(
+            'cable_creep', 'cable_m1', {'fraction': part, 'time': 0.02, 'share': share}
+        )
+        rig = replace(bench_rig.five_pulleys(), effects=(creep,))
+        rows = predict(rig, Signals.held(angles), rig.pulley_names, 300, engine='plain')
+        held[name] = rows.loop_force[-1, 0]
+    smaller = predict(
+        bench_rig.five_pulleys(), Signals.held(0.6 * angles), rig.pulley_names, 10, engine='plain'
+    ).loop_force[-1, 0]
+    assert held['tension'] == pytest.approx(0.6 * held['all'], rel=1e-5)
+    assert held['elongation'] == pytest.approx(smaller, rel=1e-5)
+    assert held['elongation'] < 0.95 * held['tension']
 
 
 def test_hysteresis_in_situ_takes_its_loop(bench_rig, linear):

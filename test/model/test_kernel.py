@@ -23,7 +23,7 @@ IN_SITU = {
         ('eccentricity', 'pulley_1', {'amplitude': 0.3, 'phase': 0.7}),
         ('eccentricity', 'pulley_3', {'amplitude': 0.2, 'phase': -0.3}),
     ),
-    'creep': (('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02}),),
+    'creep': (('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02, 'share': 0.3}),),
     'hysteresis': (('cable_hysteresis', 'cable_L3', {'force': 5.0, 'elongation': 1e-4}),),
     'tension': (
         ('tension_friction', 'pulley_1', {'coefficient': 0.1}),
@@ -37,7 +37,7 @@ IN_SITU = {
         ('presliding_friction', 'pulley_1', {'torque': 0.02, 'angle': 0.02}),
     ),
     'creep with friction and eccentricity': (
-        ('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02}),
+        ('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02, 'share': 0.8}),
         ('eccentricity', 'pulley_1', {'amplitude': 0.3, 'phase': 0.7}),
         ('tension_friction', 'pulley_1', {'coefficient': 0.1}),
     ),

@@ -2,7 +2,8 @@
 Cable loops and signals: elongation, net force and sum of tensions of every loop, with derivatives.
 
 Elongation ``delta = C theta``, net force of a loop ``T(delta) = t(d0 + delta) - t(d0 - delta)``:
-two preloaded cables. Effects add to elongation and tension, and may let a radius vary.
+two preloaded cables. Effects add to elongation and tension, let them relax, and may let a radius
+vary.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ from __future__ import annotations
 from tendon_ros.model.kernel.structure import (
     CURL, CURVE_BELOW, CURVE_CELLS, CURVE_OFFSET, CURVE_RATE, CURVE_START, DELTA, DRUM,
     ELONGATIONS, EPOCH, FOLLOW, Floats, Ints, LASH, LOOP_DAMPING, LOOP_PULLEY, M, N, PLAY,
-    PRELOAD, RADIUS, RATE, SCALE, SHIFT, SHIFT_D, SLACK, STATE_A, STATE_B, STATE_RATE,
-    STATE_S, STATE_T, STATE_Z, TENSION, TENSIONS, TENSION_D, TENSION_R, TOTAL, TOTAL_D, TURN,
-    WIDTH, WINDINGS, WOUND, elongation_law, tension_law, winding_law,
+    PRELOAD, RADIUS, RATE, RELAXATIONS, SCALE, SHIFT, SHIFT_D, SLACK, STATE_A, STATE_B,
+    STATE_RATE, STATE_S, STATE_T, STATE_Z, TENSION, TENSIONS, TENSION_D, TENSION_R, TOTAL,
+    TOTAL_D, TURN, WIDTH, WINDINGS, WOUND, elongation_law, relaxation_law, tension_law,
+    winding_law,
 )  # fmt: skip
 
 #: part of a sample by which a motion's last one may be missed
@@ -94,6 +96,29 @@ def wind(m: Floats, d: Ints, w: Floats, c: Floats, at: int) -> None:
         w[CURL + i] += curl
 
 
+def both(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float, float, float]:
+    """Return net force and sum of tensions [N] of loop k at elongation x [m], each with slope."""
+    inner = 1.0
+    half = 0.5 * m[PLAY + k]
+    if half > 0.0:
+        if x > half:
+            x -= half
+        elif x < -half:
+            x += half
+        else:
+            x = 0.0
+            inner = 0.0
+    first, slope = cable(m, d, k, m[PRELOAD + k] + x)
+    second, other = cable(m, d, k, m[PRELOAD + k] - x)
+    scale = m[SCALE + k]
+    return (
+        scale * (first - second),
+        scale * (slope + other) * inner,
+        scale * (first + second),
+        scale * (slope - other) * inner,
+    )
+
+
 def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
     """Set elongation, net force and sum of tensions of every loop, with derivatives."""
     for k in range(M):
@@ -111,47 +136,41 @@ def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
     for a in range(d[ELONGATIONS + 1]):
         n = d[ELONGATIONS] + 4 * a
         k = d[n + 1]
-        z = d[n + 3]
-        value = w[at + 2 * N + z] if z >= 0 else 0.0
-        shift, by_d, by_z, dz, dz_d, dz_r, dz_z = elongation_law(
-            d[n], w[DELTA + k], w[RATE + k], value, w[EPOCH], m, d[n + 2]
-        )
+        shift, by_d = elongation_law(d[n], w[DELTA + k], w[EPOCH], m, d[n + 2])
         w[SHIFT + k] += shift
         w[SHIFT_D + k] += by_d
-        if z >= 0:
-            w[STATE_RATE + z] = dz
-            w[STATE_A + z] = dz_d
-            w[STATE_B + z] = dz_r
-            w[STATE_Z + z] = dz_z
-            w[STATE_T + z] = by_z
     for k in range(M):
         x = w[DELTA + k] + w[SHIFT + k]
-        inner = w[SHIFT_D + k]
-        half = 0.5 * m[PLAY + k]
-        if half > 0.0:
-            if x > half:
-                x -= half
-            elif x < -half:
-                x += half
-            else:
-                x = 0.0
-                inner = 0.0
-        first, slope = cable(m, d, k, m[PRELOAD + k] + x)
-        second, other = cable(m, d, k, m[PRELOAD + k] - x)
-        scale = m[SCALE + k]
-        w[TENSION + k] = scale * (first - second) + m[LOOP_DAMPING + k] * w[RATE + k]
-        w[TENSION_D + k] = scale * (slope + other) * inner
+        net, net_x, total, total_x = both(m, d, k, x)
+        w[TENSION + k] = net + m[LOOP_DAMPING + k] * w[RATE + k]
+        w[TENSION_D + k] = net_x * w[SHIFT_D + k]
         w[TENSION_R + k] = m[LOOP_DAMPING + k]
-        w[TOTAL + k] = scale * (first + second)
-        w[TOTAL_D + k] = scale * (slope - other) * inner
-        w[SLACK + k] = m[PRELOAD + k] - m[CURVE_START + k] - abs(x)
-    for a in range(d[ELONGATIONS + 1]):
-        n = d[ELONGATIONS] + 4 * a
+        w[TOTAL + k] = total
+        w[TOTAL_D + k] = total_x * w[SHIFT_D + k]
+        w[SLACK + k] = m[PRELOAD + k] - m[CURVE_START + k] - max(0.0, abs(x) - 0.5 * m[PLAY + k])
+    for a in range(d[RELAXATIONS + 1]):
+        n = d[RELAXATIONS] + 4 * a
+        k = d[n + 1]
         z = d[n + 3]
-        if z >= 0:
-            k = d[n + 1]
-            w[STATE_S + z] = w[STATE_T + z] * w[TOTAL_D + k] / w[SHIFT_D + k]
-            w[STATE_T + z] *= w[TENSION_D + k] / w[SHIFT_D + k]
+        x = w[DELTA + k] + w[SHIFT + k]
+        settled, by_z, part, share, dz, dz_x, dz_z = relaxation_law(
+            d[n], x, w[at + 2 * N + z], m, d[n + 2]
+        )
+        rest = 1.0 - share
+        net, net_x, total, total_x = both(m, d, k, x)
+        left, left_x, grip, grip_x = both(m, d, k, x - part * settled)
+        gone, gone_x, lost, lost_x = both(m, d, k, settled)
+        _, _, preload, _ = both(m, d, k, 0.0)
+        w[TENSION + k] += rest * (left - net) - share * part * gone
+        w[TENSION_D + k] += rest * (left_x - net_x) * w[SHIFT_D + k]
+        w[TOTAL + k] += rest * (grip - total) - share * part * (lost - preload)
+        w[TOTAL_D + k] += rest * (grip_x - total_x) * w[SHIFT_D + k]
+        w[STATE_RATE + z] = dz
+        w[STATE_A + z] = dz_x * w[SHIFT_D + k]
+        w[STATE_B + z] = 0.0
+        w[STATE_Z + z] = dz_z
+        w[STATE_T + z] = -part * by_z * (rest * left_x + share * gone_x)
+        w[STATE_S + z] = -part * by_z * (rest * grip_x + share * lost_x)
     for a in range(d[TENSIONS + 1]):
         n = d[TENSIONS] + 4 * a
         k = d[n + 1]

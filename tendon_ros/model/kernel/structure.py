@@ -113,6 +113,7 @@ SWITCH: int
 TORQUES: int
 BUDGETS: int
 ELONGATIONS: int
+RELAXATIONS: int
 TENSIONS: int
 WINDINGS: int
 
@@ -220,10 +221,15 @@ def budget_law(
     raise LookupError(law)
 
 
-def elongation_law(
-    law: int, delta: float, rate: float, z: float, t: float, m: Floats, o: int
-) -> tuple[float, float, float, float, float, float, float]:
+def elongation_law(law: int, delta: float, t: float, m: Floats, o: int) -> tuple[float, float]:
     """Call elongation law number ``law`` (written by the engine)."""
+    raise LookupError(law)
+
+
+def relaxation_law(
+    law: int, delta: float, z: float, m: Floats, o: int
+) -> tuple[float, float, float, float, float, float, float]:
+    """Call relaxation law number ``law`` (written by the engine)."""
     raise LookupError(law)
 
 
