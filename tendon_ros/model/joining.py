@@ -45,6 +45,7 @@ INSIDE_CALLERS = frozenset(
         'clipped',
         'smooth',
         'cable',
+        'both',
         'wind',
         'pull',
         'touch',

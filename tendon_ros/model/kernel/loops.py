@@ -119,6 +119,33 @@ def both(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float, float, flo
     )
 
 
+def relax(m: Floats, d: Ints, w: Floats, at: int) -> None:
+    """Take from net forces and sums of tensions what has relaxed."""
+    for a in range(d[RELAXATIONS + 1]):
+        n = d[RELAXATIONS] + 4 * a
+        k = d[n + 1]
+        z = d[n + 3]
+        x = w[DELTA + k] + w[SHIFT + k]
+        settled, by_z, part, share, dz, dz_x, dz_z = relaxation_law(
+            d[n], x, w[at + 2 * N + z], m, d[n + 2]
+        )
+        rest = 1.0 - share
+        net, net_x, total, total_x = both(m, d, k, x)
+        left, left_x, grip, grip_x = both(m, d, k, x - part * settled)
+        gone, gone_x, lost, lost_x = both(m, d, k, settled)
+        _, _, preload, _ = both(m, d, k, 0.0)
+        w[TENSION + k] += rest * (left - net) - share * part * gone
+        w[TENSION_D + k] += rest * (left_x - net_x) * w[SHIFT_D + k]
+        w[TOTAL + k] += rest * (grip - total) - share * part * (lost - preload)
+        w[TOTAL_D + k] += rest * (grip_x - total_x) * w[SHIFT_D + k]
+        w[STATE_RATE + z] = dz
+        w[STATE_A + z] = dz_x * w[SHIFT_D + k]
+        w[STATE_B + z] = 0.0
+        w[STATE_Z + z] = dz_z
+        w[STATE_T + z] = -part * by_z * (rest * left_x + share * gone_x)
+        w[STATE_S + z] = -part * by_z * (rest * grip_x + share * lost_x)
+
+
 def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
     """Set elongation, net force and sum of tensions of every loop, with derivatives."""
     for k in range(M):
@@ -148,29 +175,8 @@ def pull(m: Floats, d: Ints, w: Floats, at: int) -> None:
         w[TOTAL + k] = total
         w[TOTAL_D + k] = total_x * w[SHIFT_D + k]
         w[SLACK + k] = m[PRELOAD + k] - m[CURVE_START + k] - max(0.0, abs(x) - 0.5 * m[PLAY + k])
-    for a in range(d[RELAXATIONS + 1]):
-        n = d[RELAXATIONS] + 4 * a
-        k = d[n + 1]
-        z = d[n + 3]
-        x = w[DELTA + k] + w[SHIFT + k]
-        settled, by_z, part, share, dz, dz_x, dz_z = relaxation_law(
-            d[n], x, w[at + 2 * N + z], m, d[n + 2]
-        )
-        rest = 1.0 - share
-        net, net_x, total, total_x = both(m, d, k, x)
-        left, left_x, grip, grip_x = both(m, d, k, x - part * settled)
-        gone, gone_x, lost, lost_x = both(m, d, k, settled)
-        _, _, preload, _ = both(m, d, k, 0.0)
-        w[TENSION + k] += rest * (left - net) - share * part * gone
-        w[TENSION_D + k] += rest * (left_x - net_x) * w[SHIFT_D + k]
-        w[TOTAL + k] += rest * (grip - total) - share * part * (lost - preload)
-        w[TOTAL_D + k] += rest * (grip_x - total_x) * w[SHIFT_D + k]
-        w[STATE_RATE + z] = dz
-        w[STATE_A + z] = dz_x * w[SHIFT_D + k]
-        w[STATE_B + z] = 0.0
-        w[STATE_Z + z] = dz_z
-        w[STATE_T + z] = -part * by_z * (rest * left_x + share * gone_x)
-        w[STATE_S + z] = -part * by_z * (rest * grip_x + share * lost_x)
+    if d[RELAXATIONS + 1] > 0:
+        relax(m, d, w, at)
     for a in range(d[TENSIONS + 1]):
         n = d[TENSIONS] + 4 * a
         k = d[n + 1]
