@@ -161,6 +161,17 @@ def test_beyond_the_limits(bench, sound, scaled):
         admitted(sound, narrow)
 
 
+def test_a_loop_that_shakes_goes_beyond_the_limits(bench, sound, scaled):
+    widest = max(np.abs(r['setpoint/pulley_M/position'].value).max() for r in sound)
+    tight = replace(
+        bench, motors=tuple(replace(m, position_limit=(-widest, widest)) for m in bench.motors)
+    )
+    shaking = scaled(sound, 'actuator/pulley_M/position', 1.6)
+    assert not any('position_limit' in words for words in admitted(shaking, tight).left_out)
+    asked = scaled(shaking, 'setpoint/pulley_M/position', 1.6)
+    assert any('beyond the position_limit' in words for words in admitted(asked, tight).left_out)
+
+
 def test_setpoints_that_contradict_the_motion_are_left_out(bench, sound, scaled):
     for factor, words in ((-1.0, 'one of the two has the wrong sign'), (57.29578, 'in degrees')):
         intake = admitted(scaled(sound, 'setpoint/pulley_M/position', factor), bench)

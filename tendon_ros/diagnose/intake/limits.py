@@ -1,4 +1,9 @@
-"""Motor positions against the limits of the instrument file."""
+"""
+Motor positions against the limits of the instrument file.
+
+Limits are of what may be commanded: where what was asked lies within them, a loop that shakes is
+no other rig and worth a diagnosis.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +12,10 @@ import math
 
 import numpy as np
 
-from tendon_ros.base.recording import Recording
+from tendon_ros.base.recording import FloatArray, Recording
 from tendon_ros.diagnose.intake.step import Sifted, sifted
 from tendon_ros.identify.driving import drives
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument import Instrument, Motor
 
 #: overshoot and an encoder's offset that are forgiven [share of the limits' width]
 FORGIVEN = 0.15
@@ -38,16 +43,16 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
         low, high = motor.position_limit
         if not math.isfinite(high - low):
             continue
-        margin = FORGIVEN * (high - low)
-        found = np.quantile(recording[name].value, [0.002, 0.998])
-        if low - margin <= found[0] and found[1] <= high + margin:
+        found = _span(recording, name)
+        if _within(found, motor):
             continue
-        degrees = np.deg2rad(found)
+        far = np.abs(found).max() > LARGE * max(abs(low), abs(high))
+        wished = f'setpoint/{name.removeprefix("actuator/")}'
+        if not far and wished in recording and _within(_span(recording, wished), motor):
+            continue
         guess = (
             '; in degrees it would fit: convert it to rad on import'
-            if np.abs(found).max() > LARGE * max(abs(low), abs(high))
-            and low - margin <= degrees[0]
-            and degrees[1] <= high + margin
+            if far and _within(np.deg2rad(found), motor)
             else '; give the file of this rig, or correct its position_limit'
         )
         return (
@@ -55,3 +60,15 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
             f'{low:.4g} to {high:.4g} rad of motor {motor.name} in {instrument.name}{guess}'
         )
     return ''
+
+
+def _span(recording: Recording, name: str) -> FloatArray:
+    """Return from where to where a channel goes, single samples left out."""
+    return np.asarray(np.quantile(recording[name].value, [0.002, 0.998]), dtype=np.float64)
+
+
+def _within(span: FloatArray, motor: Motor) -> bool:
+    """Return whether a motor may have gone from here to there."""
+    low, high = motor.position_limit
+    margin = FORGIVEN * (high - low)
+    return bool(low - margin <= span[0] and span[1] <= high + margin)
