@@ -199,6 +199,7 @@ class Steps:
         if shared is not None:
             state = self.settled(state.model.without(shared))
         checked: set[Candidate] = set()
+        rough = False
         while True:
             worth = worths(self.problem, state)
             least = needed(self.problem, start, state)
@@ -207,15 +208,20 @@ class Steps:
                 for k, cause in enumerate(state.model.causes)
                 if cause not in checked and worth[k] < CLEAR * least
             ]
-            if not doubtful:
-                return state
-            k = min(doubtful, key=lambda k: worth[k])
-            known = self.problem.slopes(state)
-            smaller = self.problem.fitted(state.model.without(k), known, rounds=6, accuracy=1e-2)
-            if worthwhile(self.problem, start, smaller, state):
-                checked.add(state.model.causes[k])
+            if doubtful:
+                k = min(doubtful, key=lambda k: worth[k])
+                known = self.problem.slopes(state)
+                smaller = self.problem.fitted(state.model.without(k), known, 6, accuracy=1e-2)
+                if worthwhile(self.problem, start, smaller, state):
+                    checked.add(state.model.causes[k])
+                else:
+                    state, rough = smaller, True
+            elif rough:
+                # carefully only once several have gone; what then is doubtful is asked anew
+                state, rough = self._renamed(self.settled(state.model)), False
+                checked.clear()
             else:
-                state = self._renamed(self.settled(smaller.model))
+                return state
 
     def _renamed(self, state: Fit) -> Fit:
         """Give causes the names that they deserve, join what is one, and drop what is none."""
