@@ -15,6 +15,7 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parts import is_part, plain, widened
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
+from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen, Seen
@@ -112,7 +113,9 @@ class Challenge:
             )
         proposals = [p for p in proposals if p.candidate != cause]
         missed = without.cost - found.final.cost
-        rivals = self._steps.fitted(without, proposals, missed, cause.effect)
+        # imitators of something unknown are many: among them only what ends the search counts
+        brief = hopeless(self._problem, found.start, found.final)
+        rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
         wider = self._wider(found.final, cause, proposals)
         again = {r.candidate for r in wider}
         rivals = sorted(

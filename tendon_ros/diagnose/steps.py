@@ -25,6 +25,7 @@ Report = Callable[[str, float], None]
 
 CORRECTED = 36  # proposals that are judged again at their own size
 SHORTLIST = 10  # rivals of a cause that are fitted
+BRIEF = 4  # and where so much is left that only one which explains most of it matters
 #: times what is needed that a cause is worth, to first order, if it need not be left out to see
 CLEAR = 10.0
 #: part of what a fit would explain that first order is sure to see
@@ -110,7 +111,13 @@ class Steps:
         return sorted([*again, *first[CORRECTED:]], key=lambda p: -p.gain)
 
     def fitted(
-        self, state: Fit, proposals: Sequence[Proposal], needed: float, kin: str = ''
+        self,
+        state: Fit,
+        proposals: Sequence[Proposal],
+        needed: float,
+        kin: str = '',
+        *,
+        brief: bool = False,
     ) -> list[Rival]:
         """
         Fit the proposals that may explain as much as is needed, each beside what holds already.
@@ -119,6 +126,7 @@ class Steps:
         :param proposals: best first, one of each candidate.
         :param needed: by how much squares must fall.
         :param kin: an effect that is asked at more places: one preload may do what another does.
+        :param brief: whether only fits matter that are far better.
         :return: the fits, best first.
         """
         near = [
@@ -126,13 +134,13 @@ class Steps:
             for p in proposals
             if p.gain > (KIN_SEEN if p.candidate.effect == kin else FIRST_ORDER_SEES) * needed
         ]
-        chosen = near[:SHORTLIST] or list(proposals[:1])
+        chosen = near[: BRIEF if brief else SHORTLIST] or list(proposals[:1])
         known = self.problem.slopes(state)
 
         def one(proposal: Proposal) -> Rival:
             model = state.model.joined(proposal.candidate, proposal.values)
             # sizes and shapes lie along curved valleys: more of them, more steps
-            rounds = 6 * len(proposal.candidate.parameters)
+            rounds = 6 if brief else 6 * len(proposal.candidate.parameters)
             # a sensor that loses its sign turns all derivatives
             own = known if proposal.sizes else None
             fit = self.problem.fitted(model, own, rounds=max(rounds, 6), accuracy=1e-2)
