@@ -64,9 +64,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
     named = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED}
-    doubted = [k for k in range(len(causes)) if k not in named and k not in undone]
-    together = companies(ready, found, weighed, doubted)
-    named |= {company.members[0]: company.weighed for company in together}
+    able = [k for k in range(len(causes)) if k not in undone]
+    together = companies(ready, found, weighed, able)
+    for company in together:
+        named = {k: w for k, w in named.items() if k not in company.members}
+        named[company.members[0]] = company.weighed
     accepted = {*named}.union(*(company.members for company in together))
     beside = {
         k

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import combinations
 import math
 
-from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.bent import degenerate, excuses
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parts import is_part, plain, widened
@@ -116,11 +116,10 @@ class Challenge:
         # imitators of something unknown are many: among them only what ends the search counts
         brief = hopeless(self._problem, found.start, found.final)
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
-        wider = self._wider(found.final, cause, proposals)
-        again = {r.candidate for r in wider}
-        rivals = sorted(
-            [*wider, *(r for r in rivals if r.candidate not in again)], key=judged_cost
-        )
+        begun = self._wider(found.final, cause, proposals)
+        if not brief:
+            begun += self._elsewhere(found.final, cause)
+        rivals = _best_of_each([*begun, *rivals])
         rivals = self._sharpened(found, without, rivals)
         return [r for r in rivals if self._more_than_a_part(r)]
 
@@ -128,22 +127,52 @@ class Challenge:
         """Return whether a rival does anything that a simpler effect does not."""
         model = rival.fit.model
         bent = degenerate(self._problem, rival.candidate, model.values(-1))
-        return not bent and plain(self._problem, model, -1) is None
+        excuse = excuses(self._problem, model, -1)
+        return not bent and not excuse and plain(self._problem, model, -1) is None
 
     def _wider(self, state: Fit, cause: Candidate, proposals: Sequence[Proposal]) -> list[Rival]:
-        """Return the fits of effects that hold the cause's, which begin from what it found."""
-        k = state.model.causes.index(cause)
-        rest, known = state.model.without(k), self._problem.slopes(state)
+        """
+        Return the fits of effects that hold the cause's, which begin from what it found.
 
-        def one(proposal: Proposal) -> Rival:
-            candidate = proposal.candidate
-            values = widened(proposal.values, candidate, state.model.values(k), cause)
+        They are then never worse than it for having been fitted badly.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        return self._instead(
+            state,
+            cause,
+            [
+                (p.candidate, widened(p.values, p.candidate, values, cause))
+                for p in proposals
+                if is_part(cause, p.candidate)
+            ],
+        )
+
+    def _elsewhere(self, state: Fit, cause: Candidate) -> list[Rival]:
+        """
+        Return the fits of the same effect at other places, which begin from what the cause found.
+
+        Screening may have looked for their time or phase in another valley.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        others = [
+            c
+            for c in self._steps.candidates
+            if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
+        ]
+        return self._instead(state, cause, [(c, values) for c in others])
+
+    def _instead(
+        self, state: Fit, cause: Candidate, begun: Sequence[tuple[Candidate, dict[str, float]]]
+    ) -> list[Rival]:
+        """Return careful fits of candidates in the place of a cause, from where each begins."""
+        rest = state.model.without(state.model.causes.index(cause))
+        known = self._problem.slopes(state)
+
+        def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
             # only a careful fit tells whether there is more to it
-            fit = self._problem.fitted(rest.joined(candidate, values), known, 20, 1e-3)
-            return Rival(candidate, fit)
+            return Rival(begin[0], self._problem.fitted(rest.joined(*begin), known, 20, 1e-3))
 
-        fits = self._steps.pool.map(one, (p for p in proposals if is_part(cause, p.candidate)))
-        return [r for r in fits if math.isfinite(r.fit.cost)]
+        return [r for r in self._steps.pool.map(one, begun) if math.isfinite(r.fit.cost)]
 
     def _without(self, found: Found, k: int) -> Fit:
         """
@@ -212,3 +241,11 @@ class Challenge:
                 if wins(rival.candidate, trial):
                     return trial
         return None
+
+
+def _best_of_each(rivals: Sequence[Rival]) -> list[Rival]:
+    """Return the best fit of each candidate, best first."""
+    best: dict[Candidate, Rival] = {}
+    for rival in sorted(rivals, key=judged_cost):
+        best.setdefault(rival.candidate, rival)
+    return list(best.values())

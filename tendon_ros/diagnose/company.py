@@ -7,7 +7,7 @@ much. Friction of a tool's spindle and of its jaw, between two torque sensors, a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 import math
@@ -39,7 +39,7 @@ class Company:
 
 
 def companies(
-    ready: Prepared, found: Found, weighed: Sequence[Weighed], doubted: Sequence[int]
+    ready: Prepared, found: Found, weighed: Sequence[Weighed], able: Sequence[int]
 ) -> list[Company]:
     """
     Return what is certain of causes that are each uncertain.
@@ -47,12 +47,13 @@ def companies(
     :param ready: the problem.
     :param found: what the search has found.
     :param weighed: its causes.
-    :param doubted: which of them are not named alone, sorted; events make up for nothing.
+    :param able: which of them may make up for one another, sorted; events do for nothing.
     :return: the companies that can be named.
     """
     problem, final = ready.problem, found.final
     causes = final.model.causes
-    lasting = [k for k in doubted if not causes[k].instants]
+    lasting = [k for k in able if not causes[k].instants]
+    sure = {k for k in lasting if weighed[k].chance >= NAMED}
     missed = {k: found.without[k].cost - final.cost for k in lasting}
 
     fits: dict[tuple[int, ...], Fit] = {}
@@ -63,14 +64,15 @@ def companies(
             fits[members] = problem.fitted(model, rounds=6, accuracy=1e-3)
         return fits[members]
 
-    linked = []
-    for one, two in combinations(lasting, 2):
-        together = without_all((one, two)).cost - final.cost
-        # what cannot be computed without both says nothing
-        if MAKES_UP * (missed[one] + missed[two]) < together < math.inf:
-            linked.append((one, two))
+    more = {
+        (one, two): without_all((one, two)).cost
+        - final.cost
+        - MAKES_UP * (missed[one] + missed[two])
+        for one, two in combinations(lasting, 2)
+        if not {one, two} <= sure
+    }
     named = []
-    for members in _components(linked, len(causes)):
+    for members in _components(_linked(more, sure), len(causes)):
         first, *others = sorted(members, key=lambda k: -missed[k])
         without = without_all(members)
         if not math.isfinite(without.cost):
@@ -85,6 +87,28 @@ def companies(
         whole = replace(weighed[first], equal=known, signs=signs, chance=likely, without=without)
         named.append(Company((first, *others), whole))
     return named
+
+
+def _linked(more: Mapping[tuple[int, int], float], sure: Collection[int]) -> list[tuple[int, int]]:
+    """
+    Return which causes go together, of pairs with what they are missed more together.
+
+    Those that are named alone stay apart: each doubted one goes with the one of them that it makes
+    up for most, and else with its like.
+    """
+    links = []
+    goes: dict[int, tuple[float, tuple[int, int]]] = {}
+    for pair, size in more.items():
+        # what cannot be computed without both says nothing
+        if not 0.0 < size < math.inf:
+            continue
+        doubted = [k for k in pair if k not in sure]
+        if len(doubted) == len(pair):
+            links.append(pair)
+        else:
+            goes[doubted[0]] = max(goes.get(doubted[0], (0.0, pair)), (size, pair))
+    beside = [pair for _, pair in goes.values()]
+    return [*beside, *(pair for pair in links if not goes.keys() & set(pair))]
 
 
 def _components(linked: Sequence[tuple[int, int]], count: int) -> list[tuple[int, ...]]:

@@ -22,7 +22,7 @@ which s would rest, the elongation's part takes fraction / time times the integr
 (T(x) - T(x')) * (x - x') over time, and both factors have the same sign.
 
 What is left out: the preload of both cables settles too; give the pretension as it is when used.
-More than one time constant; over seconds to minutes one stands for several within a tenth or two.
+More than one time constant; over seconds one stands for several within one to three tenths.
 
 Source: Zener's standard linear solid; for the tension's part the quasi-linear viscoelasticity of
 Fung (Biomechanics, 1981), with the elongation filtered instead of the tension.
@@ -98,6 +98,6 @@ EFFECT = Effect(
     law=cable_creep_law,
     stateful=True,
     dissipative=True,
-    form=0.2,
+    form=0.3,
     other=soft_at_once,
 )

@@ -1,5 +1,7 @@
 """What makes up for one another is named as a set; what foretells is kept, named or not."""
 
+from dataclasses import replace
+
 import pytest
 
 from tendon_ros.diagnose import session
@@ -63,6 +65,18 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
     assert company.weighed.cause == found.final.model.causes[first]
     assert company.weighed.equal == (found.final.model.causes[1 - first],)
     assert company.weighed.signs.worth > judged.weighed[first].signs.worth
+
+
+def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
+    ready, found = alike
+    weighed = list(belief(ready, found).weighed)
+    chances = [0.9, 0.2, 0.9]
+    judged = [replace(w, chance=c) for w, c in zip(weighed, chances, strict=True)]
+    [company] = companies(ready, found, judged, [0, 1, 2])
+    assert sorted(company.members) == [0, 1]
+    # two that are named alone are told apart
+    judged = [replace(w, chance=0.9) for w in weighed]
+    assert companies(ready, found, judged, [0, 1, 2]) == []
 
 
 def test_causes_that_act_apart_are_no_company(alike):
