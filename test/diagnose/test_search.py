@@ -54,3 +54,19 @@ def test_friction_is_what_holds_the_other_or_is_held_by_it(bench, measured_on, e
     assert cause.effect == effect
     assert found.final.model.values(0) == pytest.approx(values, rel=0.1)
     assert STRIBECK not in [rival.candidate for rival in found.rivals[0]]
+
+
+def test_the_same_effect_elsewhere_is_no_worse_than_where_the_cause_would_lead(bench, measured_on):
+    slips = [Candidate('cable_slip', f'cable_{name}') for name in ('m1', '12', 'L3')]
+    true = {'jump': 4e-4, 'time': 1.6}
+    motors_only = ('pulley/', 'load_cell')
+    run = measured_on(bench, ('cable_slip', 'cable_12', true), touching=True, without=motors_only)
+    problem = prepared([run], bench).problem
+    found = Search(problem, slips, 1).run()
+    [cause] = found.final.model.causes
+    values = found.final.model.values(0)
+    assert values['time'] == pytest.approx(1.6, abs=0.1)
+    rivals = {rival.candidate: rival.fit for rival in found.rivals[0]}
+    for other in set(slips) - {cause}:
+        fit = problem.fitted(problem.empty.joined(other, values), rounds=20)
+        assert rivals[other].cost <= 1.001 * fit.cost

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import Steps
-from tendon_ros.identify.candidate import Candidate
+from tendon_ros.diagnose.steps import best_of, BRIEF, Steps
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.screening import Screen
 
 CREEP = Candidate('cable_creep', 'cable_12')
 SOFTER = Candidate('cable_stiffness', 'cable_12')
@@ -32,3 +33,12 @@ def test_creep_that_is_over_at_once_takes_no_name_that_was_withheld(soft, candid
     problem, start, state = soft
     steps = Steps(problem, candidates, 1, lambda *_: None)
     assert list(steps.pruned(start, state).model.causes) == named
+
+
+def test_a_brief_look_fits_few_and_the_right_one_among_them(soft, bench):
+    problem, start, _ = soft
+    steps = Steps(problem, everyone(bench, [s.channel for s in bench.sensors]), 1, lambda *_: None)
+    proposals = best_of(steps.screened(Screen(problem, start)))
+    brief = steps.fitted(start, proposals, 0.0, brief=True)
+    assert len(brief) <= BRIEF < len(steps.fitted(start, proposals, 0.0))
+    assert SOFTER in [rival.candidate for rival in brief]
