@@ -124,10 +124,16 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     causes = final.model.causes
     gone = set(causes) - set(without.model.causes)
     event = any(cause.instants for cause in gone)
-    places = {cause.place for cause in gone}
-    kept = zip(causes, wrong, strict=True)
-    beside = sum(power for c, power in kept if c.place in places and c not in gone)
-    return Signs(max(worth, 1e-9), in_one, left, explained, form, event, beside)
+    # a motor and the pulley that it turns are one place
+    motors = problem.rollouts.instrument.motors
+    body = {f'motor_{motor.name}': f'pulley_{motor.pulley}' for motor in motors}
+    places = {body.get(cause.place, cause.place) for cause in gone}
+    kept = [
+        power
+        for cause, power in zip(causes, wrong, strict=True)
+        if cause not in gone and body.get(cause.place, cause.place) in places
+    ]
+    return Signs(max(worth, 1e-9), in_one, left, explained, form, event, sum(kept))
 
 
 #: probability that a cause has at most which foretells nothing, which others undo, or which may be

@@ -8,7 +8,7 @@ from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import equals
+from tendon_ros.diagnose.judge import equals, signs_beside
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -85,6 +85,15 @@ def test_causes_that_act_apart_are_no_company(alike):
     assert companies(ready, found, weighed, [0, 2]) == []
     assert companies(ready, found, weighed, [2]) == []
     assert companies(ready, found, weighed, []) == []
+
+
+def test_a_motor_is_at_the_place_of_its_pulley(found_of):
+    """What the friction's law may leave speaks against a small cause in the motor, too."""
+    elsewhere = (Candidate('coulomb_friction', 'pulley_2'), {'torque': 0.05})
+    there = (Candidate('coulomb_friction', 'pulley_L'), {'torque': 0.05})
+    for friction, beside in ((elsewhere, False), (there, True)):
+        ready, found = found_of(friction, (GAIN, {'gain': 1.1}))
+        assert (signs_beside(ready.problem, found, found.without[1]).beside > 0.0) == beside
 
 
 def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
