@@ -63,13 +63,12 @@ def belief(ready: Prepared, found: Found) -> Belief:
     undone = undoing(ready.problem, found.final)
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
-    named = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED}
     able = [k for k in range(len(causes)) if k not in undone]
     together = companies(ready, found, weighed, able)
-    for company in together:
-        named = {k: w for k, w in named.items() if k not in company.members}
-        named[company.members[0]] = company.weighed
-    accepted = {*named}.union(*(company.members for company in together))
+    members = {k for company in together for k in company.members}
+    alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
+    named = alone | {company.members[0]: company.weighed for company in together}
+    accepted = members | {*alone}
     beside = {
         k
         for k, cause in enumerate(causes)

@@ -119,7 +119,7 @@ class Challenge:
         begun = self._wider(found.final, cause, proposals)
         if not brief:
             begun += self._elsewhere(found.final, cause)
-        rivals = _best_of_each([*begun, *rivals])
+        rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = self._sharpened(found, without, rivals)
         return [r for r in rivals if self._more_than_a_part(r)]
 
@@ -241,11 +241,3 @@ class Challenge:
                 if wins(rival.candidate, trial):
                     return trial
         return None
-
-
-def _best_of_each(rivals: Sequence[Rival]) -> list[Rival]:
-    """Return the best fit of each candidate, best first."""
-    best: dict[Candidate, Rival] = {}
-    for rival in sorted(rivals, key=judged_cost):
-        best.setdefault(rival.candidate, rival)
-    return list(best.values())

@@ -55,7 +55,6 @@ def companies(
     lasting = [k for k in able if not causes[k].instants]
     sure = {k for k in lasting if weighed[k].chance >= NAMED}
     missed = {k: found.without[k].cost - final.cost for k in lasting}
-
     fits: dict[tuple[int, ...], Fit] = {}
 
     def without_all(members: tuple[int, ...]) -> Fit:
@@ -64,13 +63,12 @@ def companies(
             fits[members] = problem.fitted(model, rounds=6, accuracy=1e-3)
         return fits[members]
 
-    more = {
-        (one, two): without_all((one, two)).cost
-        - final.cost
-        - MAKES_UP * (missed[one] + missed[two])
-        for one, two in combinations(lasting, 2)
-        if not {one, two} <= sure
-    }
+    def more_together(pair: tuple[int, int]) -> float:
+        alone = missed[pair[0]] + missed[pair[1]]
+        return without_all(pair).cost - final.cost - MAKES_UP * alone
+
+    pairs = [pair for pair in combinations(lasting, 2) if not sure.issuperset(pair)]
+    more = {pair: more_together(pair) for pair in pairs}
     named = []
     for members in _components(_linked(more, sure), len(causes)):
         first, *others = sorted(members, key=lambda k: -missed[k])

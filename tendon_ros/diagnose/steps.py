@@ -48,16 +48,16 @@ def judged_cost(rival: Rival) -> float:
     return rival.fit.cost * (1.0 + PARAMETER * len(rival.candidate.parameters))
 
 
-def best_of(proposals: Sequence[Proposal]) -> list[Proposal]:
+def best_of[T: (Proposal, Rival)](tried: Sequence[T]) -> list[T]:
     """
-    Return the best proposal of each candidate.
+    Return the best proposal, or the best fit, of each candidate.
 
-    :param proposals: best first.
+    :param tried: best first.
     :return: best first.
     """
-    best: dict[Candidate, Proposal] = {}
-    for proposal in proposals:
-        best.setdefault(proposal.candidate, proposal)
+    best: dict[Candidate, T] = {}
+    for one in tried:
+        best.setdefault(one.candidate, one)
     return list(best.values())
 
 

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from tendon_ros.base.recording import FloatArray, Recording
-from tendon_ros.diagnose.intake.step import Sifted, sifted
+from tendon_ros.diagnose.intake.step import asked_of, Sifted, sifted
 from tendon_ros.identify.driving import drives
 from tendon_ros.model.instrument import Instrument, Motor
 
@@ -47,7 +47,7 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
         if _within(found, motor):
             continue
         far = np.abs(found).max() > LARGE * max(abs(low), abs(high))
-        wished = f'setpoint/{name.removeprefix("actuator/")}'
+        wished = asked_of(name)
         if not far and wished in recording and _within(_span(recording, wished), motor):
             continue
         guess = (

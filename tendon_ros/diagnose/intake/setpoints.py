@@ -14,7 +14,7 @@ import numpy as np
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.intake.motion import travel
-from tendon_ros.diagnose.intake.step import Sifted, without
+from tendon_ros.diagnose.intake.step import asked_of, Sifted, without
 from tendon_ros.diagnose.intake.units import factor_name
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.model.instrument import Instrument
@@ -37,7 +37,7 @@ def followed(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
         unusable = ''
         wrong: set[str] = set()
         for name in encoder_channels(instrument):
-            wished = f'setpoint/{name.removeprefix("actuator/")}'
+            wished = asked_of(name)
             if wished not in recording:
                 continue
             position, setpoint = recording[name], recording[wished]

@@ -40,6 +40,16 @@ def compared(recording: Recording, instrument: Instrument) -> tuple[Sensor, ...]
     )
 
 
+def asked_of(position: str) -> str:
+    """
+    Return the channel of what was asked of a motor.
+
+    :param position: the channel of where it was.
+    :return: the name of its set-point's channel.
+    """
+    return f'setpoint/{position.removeprefix("actuator/")}'
+
+
 def without(recording: Recording, names: Container[str]) -> Recording:
     """
     Return a recording that lacks some channels.

@@ -98,16 +98,9 @@ def wind(m: Floats, d: Ints, w: Floats, c: Floats, at: int) -> None:
 
 def both(m: Floats, d: Ints, k: int, x: float) -> tuple[float, float, float, float]:
     """Return net force and sum of tensions [N] of loop k at elongation x [m], each with slope."""
-    inner = 1.0
     half = 0.5 * m[PLAY + k]
-    if half > 0.0:
-        if x > half:
-            x -= half
-        elif x < -half:
-            x += half
-        else:
-            x = 0.0
-            inner = 0.0
+    inner = 0.0 if -half < x < half else 1.0
+    x -= clipped(x, -half, half)
     first, slope = cable(m, d, k, m[PRELOAD + k] + x)
     second, other = cable(m, d, k, m[PRELOAD + k] - x)
     scale = m[SCALE + k]
