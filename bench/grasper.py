@@ -37,18 +37,25 @@ SPINDLE = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
 MOTOR = ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort')
 JAW = 'pulley/pulley_jaw/position'
 LOAD = 'load_cell/torque'
-RATE = 50.0  # [Hz] of estimates: the motions are of half a hertz
+RATE = 50.0  # [Hz] of what is compared: the motions are of half a hertz
 
 
-def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, FloatArray]:
-    """Return the spindle's torque as measured and as the model has it [N m], shape (bins,)."""
+def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """
+    Return times [s], the spindle's torque as measured and as the model has it [N m].
+
+    All at ``RATE``: bins follow the speed, and every run counts by its length.
+    """
     problem = prepared(admitted([run], instrument).recordings, instrument).whole
     [segment] = problem.rollouts.segments
     [rows] = problem.rollouts.predicted([[]])
     channels = [m.sensor.channel for m in segment.measured]
     at = channels.index(SPINDLE[1])
-    kept = segment.time > SETTLING
-    return segment.measured[at].value[kept], rows[at][kept]
+    time = np.arange(SETTLING, segment.time[-1], 1.0 / RATE)
+    measured, model = (
+        np.interp(time, segment.time, row) for row in (segment.measured[at].value, rows[at])
+    )
+    return time, measured, model
 
 
 def wandered(runs: Sequence[Recording]) -> float:
@@ -110,7 +117,7 @@ def main() -> None:
     held = [run for key, run in runs.items() if key not in TRAINED]
     print(f'{len(held)} runs that no fit has seen')
     for name, instrument in (('file', plain), ('diagnosed', found)):
-        off = [a - b for a, b in (predicted(run, instrument) for run in held)]
+        off = [a - b for _, a, b in (predicted(run, instrument) for run in held)]
         print(f'{name:10} spindle torque from jaw torque and motion {1e3 * rms(off):6.2f} mN m')
     wander = wandered([runs[key] for key in TRAINED])
     print(f'the load wanders by {1e3 * wander:.0f} mN m in a second, in the runs of the diagnosis')
@@ -149,8 +156,7 @@ def drawn(
     figure, axes = plt.subplots(len(keys), 1, figsize=(9, 2.6 * len(keys)), sharex=True)
     for axis, key in zip(np.atleast_1d(axes), keys, strict=True):
         for name, instrument in zip(('instrument file', 'diagnosed'), instruments, strict=True):
-            measured, model = predicted(runs[key], instrument)
-            time = SETTLING + np.linspace(0.0, 20.0 - SETTLING, len(measured))
+            time, measured, model = predicted(runs[key], instrument)
             if name == 'instrument file':
                 axis.plot(time, 1e3 * measured, color='black', linewidth=1.6, label='measured')
             axis.plot(time, 1e3 * model, linewidth=1.0, label=name)
