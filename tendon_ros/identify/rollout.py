@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,12 @@ ROUGH = 2e-5  # the same where nothing that is measured notices
 #: of the noise: what that may change of the file's model. Dry friction makes it some five times
 #: more, and derivatives are taken from changes of a tenth
 UNNOTICED = 3e-3
+#: [bytes] of predictions that are remembered: a third of what is asked was asked a moment ago,
+#: mostly of recordings in which the event that moves did not happen
+REMEMBERED = 1e8
+
+#: an effect in force that can be looked up: effect, place, whether instead, parameters
+Key = tuple[str, str, bool, tuple[tuple[str, float], ...]]
 
 
 class Rollouts:
@@ -70,6 +76,8 @@ class Rollouts:
             )
             for segment in self.segments
         )
+        largest = 8 * max([1, *(len(s.measured) * len(s.time) for s in self.segments)])
+        self._one = lru_cache(max(1, int(REMEMBERED / largest)))(self._computed)
         self._columns = tuple(
             [
                 [s.channel for s in instrument.sensors].index(m.sensor.channel)
@@ -131,7 +139,7 @@ class Rollouts:
         found = []
         for n, own in enumerate(uses):
             if asked is None or asked[n]:
-                found.append(self._one(n, own))
+                found.append(self._one(n, tuple(_key(use) for use in own)))
             else:
                 segment = self.segments[n]
                 found.append(np.zeros((len(segment.measured), len(segment.time))))
@@ -187,8 +195,10 @@ class Rollouts:
         )
         return rows, numbers
 
-    def _one(self, n: int, uses: Sequence[EffectUse]) -> FloatArray:
+    def _computed(self, n: int, keys: tuple[Key, ...]) -> FloatArray:
+        """Return all channels of a segment; nobody may write into what is remembered."""
         segment = self.segments[n]
+        uses = [EffectUse(effect, place, dict(of), instead) for effect, place, instead, of in keys]
         try:
             rows, numbers = self._rolled(n, uses)
         except (SimulationError, EffectError):
@@ -196,7 +206,9 @@ class Rollouts:
         found = rows.reading[:, self._columns[n]].T
         found = as_held(rows, numbers, segment, found)
         reported = as_reported(rows.instrument, numbers, segment, found, self.usual)
-        return _zeroed(segment, reported)
+        found = _zeroed(segment, reported)
+        found.flags.writeable = False
+        return found
 
 
 def loosest(
@@ -236,6 +248,11 @@ def modified(instrument: Instrument, effects: Sequence[EffectUse]) -> Numbers:
             numbers.kind, index = place_index(instrument, use.place)
             effect.modify(numbers, index, **{**effect.neutral, **use.parameters})
     return numbers
+
+
+def _key(use: EffectUse) -> Key:
+    """Return what tells an effect in force from another."""
+    return use.effect, use.place, use.instead, tuple(use.parameters.items())
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:
