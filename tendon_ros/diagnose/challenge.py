@@ -212,8 +212,9 @@ class Challenge:
         here = self._problem.slopes(state)
 
         def careful(rival: Rival) -> Fit:
-            # derivatives of another state stall a fit: two places then seem to differ that do not
-            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=1e-3)
+            # derivatives of another state stall a fit: two places then seem to differ that do not;
+            # when events were is found in the second fit
+            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=2e-3)
             if fit.cost <= equal:
                 return fit
             return self._problem.fitted(fit.model, rounds=6, accuracy=1e-3)
