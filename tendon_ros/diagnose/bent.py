@@ -75,7 +75,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
 
 def excuses(problem: Problem, model: Model, k: int) -> bool:
     """
-    Return whether a cause is a torque limit that most torques pass.
+    Return whether a cause is a torque limit that nearly all torques pass.
 
     A fit lowers it to have ever more excused, until it means nothing.
 

@@ -28,7 +28,7 @@ from tendon_ros.model.simulation import predict
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-USUAL = 0.4  # part of a motor's torques that no unknown limit cuts off
+USUAL = 0.2  # part of a motor's torques that no unknown limit cuts off
 TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
 ROUGH = 2e-5  # the same where nothing that is measured notices
 #: of the noise: what that may change of the file's model. Dry friction makes it some five times

@@ -90,7 +90,7 @@ def as_reported(
         limit = numbers['motor_limit'][j]
         if limit >= 1e3:
             continue
-        # a limit that most torques passed is none: it would excuse whatever the model asks
+        # a limit that nearly all torques passed is none: it would excuse whatever the model asks
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
         limit = max(limit, usual(measured.sensor.of, gain, bias))
         asked = gain * found[row] + bias
