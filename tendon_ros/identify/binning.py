@@ -17,7 +17,9 @@ from tendon_ros.model.numbers import Numbers
 
 FloatArray = NDArray[np.float64]
 
-BINS = 20_000  # bins of what is fitted together: minutes of data are seen more coarsely
+#: bins of what is fitted together: minutes of data are seen more coarsely; at most, where
+#: acceleration needs them
+ENOUGH, BINS = 8_000, 20_000
 USUAL_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 #: part of a motor's torque that acceleration within a bin may get wrong before bins are halved:
 #: more would show as a wrong inertia
@@ -38,7 +40,7 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     lengths = [r.end - r.start for r in recordings]
     total = min(sum(lengths), max(FITTED, *lengths))
     sampling = max(r[driving[0].sensor.channel].sampling for r in recordings)
-    wished = max(USUAL_BIN, total / BINS, sampling)
+    wished = max(USUAL_BIN, total / ENOUGH, sampling)
     samples = round(wished / sampling)
     longest = max(recordings, key=lambda r: r.end - r.start)
     motions = [m for d in driving if (m := Driven.of(longest, instrument, d)) is not None]
