@@ -75,6 +75,7 @@ def patched(
         for k, cause in enumerate(model.causes)
         if cause.acts_in(recording)
     ]
+    bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
     return replace(
         instrument,
@@ -83,9 +84,7 @@ def patched(
         couplings=couplings,
         curves=tuple(c for name, c in curves.items() if name in used),
         contacts=contacts,
-        effects=in_force(
-            instrument.effects, [*known, *accepted, *bristles(model, instrument.effects)]
-        ),
+        effects=in_force(instrument.effects, [*known, *accepted, *bent]),
     )
 
 

@@ -89,17 +89,21 @@ def _dry_places(causes: Sequence[Candidate]) -> list[str]:
     return sorted(dry - own)
 
 
-def bristles(model: Model, own: Sequence[EffectUse]) -> list[EffectUse]:
+def bristles(model: Model, own: Sequence[EffectUse], least: float) -> list[EffectUse]:
     """
     Return the effects that let dry friction build up over an angle.
 
     :param model: the model.
     :param own: effects of the instrument file.
+    :param least: angle [rad] by which the model may be off anyway: what builds up faster only
+        takes longer to compute.
     :return: one effect for each pulley with dry friction, but for those whose file knows better.
     """
     known = {use.place for use in own if use.effect == BENT and not is_bristle(use)}
     return [
-        EffectUse(BENT, place, {'torque': 0.0, 'angle': BRISTLE.value(z)}, instead=True)
+        EffectUse(
+            BENT, place, {'torque': 0.0, 'angle': max(least, BRISTLE.value(z))}, instead=True
+        )
         for place, z in model.bristle.items()
         if place not in known
     ]

@@ -75,7 +75,7 @@ class Residuals:
         :return: effects by segment.
         """
         always = [t.use(z) for t, z in self.moved(model)]
-        always += bristles(model, self.rollouts.instrument.effects)
+        always += bristles(model, self.rollouts.instrument.effects, self.rollouts.tolerance)
         own = [cause.use(model.values(k)) for k, cause in enumerate(model.causes)]
         return [
             always + [use for c, use in zip(model.causes, own, strict=True) if c.acts_in(s.name)]
