@@ -18,6 +18,7 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.enough import enough, KEPT
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.identify.binning import bin_length
+from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import loosest, Rollouts
@@ -26,6 +27,7 @@ from tendon_ros.identify.segment import (
     Segment,
     segment_of,
     SETTLING,
+    thinned,
 )
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import Instrument
@@ -110,6 +112,7 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     :param jobs: threads.
     :return: the problem.
     """
+    recordings = [_thinned(r, instrument) for r in recordings]
     period = bin_length(recordings, instrument)
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
@@ -118,6 +121,14 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     segments = noise.given(segments, predicted)
     tolerance = loosest(instrument, segments, predicted)
     return _problems(Rollouts(instrument, segments, jobs, tolerance), noise, 0)
+
+
+def _thinned(recording: Recording, instrument: Instrument) -> Recording:
+    """Return a recording whose motors' encoders are read no more often than tells anything."""
+    channels = dict(recording.channels)
+    for name in encoder_channels(instrument):
+        channels[name] = thinned(channels[name])
+    return replace(recording, channels=channels)
 
 
 def _problems(rollouts: Rollouts, noise: Noise, shift: int) -> Prepared:

@@ -26,6 +26,7 @@ BoolArray = NDArray[np.bool_]
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
+OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 
 
@@ -169,6 +170,17 @@ def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatAr
     return np.asarray(channel.at(middles), dtype=np.float64)
 
 
+def thinned(channel: Channel) -> Channel:
+    """
+    Return what is to be smoothed, read no more often than tells anything.
+
+    :param channel: what was read.
+    :return: every tenth reading of ten thousand a second.
+    """
+    every = max(1, round(OFTEN / channel.sampling))
+    return Channel(channel.name, channel.time[::every], channel.value[::every])
+
+
 def motion_of(
     channel: Channel, sensor: Sensor, start: float, sampling: float, samples: int
 ) -> FloatArray:
@@ -273,7 +285,11 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
             continue
         contact = contacts[sensor.of]
         load = _motion(
-            recording[sensor.channel], sensor, segment.start, segment.period, len(segment.time)
+            thinned(recording[sensor.channel]),
+            sensor,
+            segment.start,
+            segment.period,
+            len(segment.time),
         )
         arm = contact.arm if sensor.kind == 'contact_force' else 1.0
         inputs.add(sensor.channel)

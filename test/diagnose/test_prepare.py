@@ -8,6 +8,7 @@ import pytest
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.prepare import held_out, prepared
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.model.instrument_file import load_instrument
 
 
@@ -164,3 +165,25 @@ def test_of_more_than_fits_need_those_that_differ_most_are_fitted(bench, free):
     assert len(fitted) == 3
     assert {14, 15} < set(fitted)
     assert fitted != [n for n, m in enumerate(held_out([*segments, bare], 2)) if not m.any()]
+
+
+def test_encoders_at_ten_kilohertz_are_read_a_thousand_times_a_second(bench, free, monkeypatch):
+    def often(channel, rate):
+        time = np.arange(channel.time[0], channel.time[-1], 1.0 / rate)
+        return Channel(channel.name, time, channel.at(time))
+
+    seen = []
+
+    def noted(value, *args):
+        seen.append(len(value))
+        return smoothed(value, *args)
+
+    monkeypatch.setattr('tendon_ros.identify.segment.smoothed', noted)
+    found = {}
+    for rate in (1e3, 1e4):
+        channels = {n: often(c, rate) for n, c in free.channels.items()}
+        ready = prepared([replace(free, channels=channels)], bench)
+        [segment] = ready.whole.rollouts.segments
+        found[rate] = segment.motion.value
+    assert max(seen) <= 1.01e3 * (free.end - free.start)
+    assert found[1e4] == pytest.approx(found[1e3], abs=1e-5)
