@@ -10,6 +10,7 @@ from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import modified, true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.simulation import predict
 
 INJECTED = {
     'friction': ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
@@ -45,6 +46,28 @@ def test_controller_and_sampling_do_not_matter(bench, measured_on, part, rate):
     )
     run = measured_on(other, rate=rate)
     assert misfit(prepared([run], bench).problem) < 1.5
+
+
+def test_what_was_predicted_a_moment_ago_is_not_computed_again(bench, measured_on, monkeypatch):
+    runs = [measured_on(bench), measured_on(bench, seed=2, name='again')]
+    rollouts = prepared(runs, bench).whole.rollouts
+    computed = []
+
+    def counted(instrument, *args, **more):
+        computed.append(more['effects'])
+        return predict(instrument, *args, **more)
+
+    monkeypatch.setattr('tendon_ros.identify.rollout.predict', counted)
+    weak = EffectUse('coulomb_friction', 'pulley_3', {'torque': 0.05})
+    strong = EffectUse('coulomb_friction', 'pulley_3', {'torque': 0.06})
+    before = rollouts.predicted([[weak], [weak]])
+    assert len(computed) == 2
+    after = rollouts.predicted([[weak], [strong]])
+    assert len(computed) == 3
+    assert after[0] is before[0]
+    assert not np.array_equal(after[1], before[1])
+    with pytest.raises(ValueError, match='read-only'):
+        before[0][0] = 0.0
 
 
 def test_only_what_is_asked_for_is_rolled_out(bench, measured_on):
