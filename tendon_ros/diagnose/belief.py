@@ -20,6 +20,10 @@ from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.identify.explanation import Model
 
+#: kinds of effect that may be alike: there are five of dry friction, and no family has more. Where
+#: still others do as well, all of them do badly
+ALIKE = 5
+
 
 @dataclass(frozen=True)
 class Belief:
@@ -101,10 +105,13 @@ def _weighed(ready: Prepared, found: Found, k: int, left: float, undone: bool) -
     without = found.without[k]
     signs = replace(signs_beside(ready.problem, found, without), left=left)
     likely = chance(ready, found, k, signs)
+    cause = found.final.model.causes[k]
+    equal = tuple(r.candidate for r in equals(ready.problem, found, k))
+    vague = len({c.effect for c in (cause, *equal)}) > ALIKE
     return Weighed(
-        cause=found.final.model.causes[k],
-        equal=tuple(r.candidate for r in equals(ready.problem, found, k)),
+        cause=cause,
+        equal=equal,
         signs=signs,
-        chance=min(IDLE, likely) if undone else likely,
+        chance=min(IDLE, likely) if undone or vague else likely,
         without=without,
     )

@@ -7,8 +7,8 @@ import pytest
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.company import companies
-from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import equals, signs_beside
+from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -105,6 +105,21 @@ def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
     assert doubtful.accepted == ()
     assert doubtful.kept == (0, 1)
     assert doubtful.model(found, doubtful.kept) == found.final.model
+
+
+def test_what_any_effect_does_as_well_is_not_named(found_of):
+    ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
+    frictions = ('stribeck', 'presliding', 'asymmetric', 'tension')
+    rivals = [Rival(Candidate(f'{f}_friction', 'pulley_3'), found.final) for f in frictions]
+    found.rivals[0] = rivals
+    sure = belief(ready, found)
+    assert len(sure.weighed[0].equal) == 4
+    assert 0 in sure.named
+    found.rivals[0] = [*rivals, Rival(Candidate('gravity', 'pulley_3'), found.final)]
+    vague = belief(ready, found)
+    assert vague.weighed[0].chance <= IDLE < sure.weighed[0].chance
+    assert 0 not in vague.named
+    assert 1 in vague.named
 
 
 def test_a_preload_that_others_hide_within_their_tolerances_is_found(bench, measured_on):
