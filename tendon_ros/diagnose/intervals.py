@@ -9,9 +9,11 @@ blocks as clusters), so that a thousand samples of one hold are not a thousand p
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 from scipy.stats import t as student
 
 from tendon_ros.base.parameter import Parameter
@@ -162,12 +164,14 @@ def mean_square_interval(squares: Sequence[float]) -> tuple[float, float]:
     Return the 95 % interval of a root mean square from those of blocks.
 
     :param squares: mean squares of blocks that are nearly independent.
-    :return: low and high of the root.
+    :return: low and high of the root; of a single block, as of one draw from a normal
+        distribution: from half of it to thirty times as much.
     """
     values = np.asarray(squares, dtype=np.float64)
     if len(values) < 2:
-        root = float(np.sqrt(values.mean())) if len(values) else 0.0
-        return root, root
+        root = float(np.sqrt(values.sum()))
+        low, high = (root / math.sqrt(chi2.ppf(part, 1)) for part in (0.975, 0.025))
+        return low, high
     half = float(student.ppf(0.975, len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values)))
     mean = float(values.mean())
     return float(np.sqrt(max(mean - half, 0.0))), float(np.sqrt(mean + half))

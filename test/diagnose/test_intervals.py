@@ -18,6 +18,8 @@ TRUTH = 0.05
 class Line:
     """Rollouts of a model that is a straight line: torque bias and gain of one motor."""
 
+    tolerance = 4e-6
+
     def __init__(self, value):
         time = PERIOD * (np.arange(BINS) + 0.5)
         self.instrument = load_instrument('single_body')
@@ -94,8 +96,9 @@ def test_the_interval_of_a_gap_covers_it():
     assert 270 <= inside <= 299
 
 
-def test_a_gap_of_one_block_has_no_width():
-    assert mean_square_interval([4.0]) == (2.0, 2.0)
+def test_a_gap_of_one_block_is_hardly_known():
+    low, high = mean_square_interval([4.0])
+    assert low < 0.5 * 2.0 < 10.0 * 2.0 < high
     assert mean_square_interval([]) == (0.0, 0.0)
 
 
