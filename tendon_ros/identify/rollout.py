@@ -36,7 +36,7 @@ ROUGH = 2e-5  # the same where nothing that is measured notices
 UNNOTICED = 3e-3
 #: [bytes] of predictions that are remembered: a third of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
-REMEMBERED = 1e8
+REMEMBERED = 3e7
 
 #: an effect in force that can be looked up: effect, place, whether instead, parameters
 Key = tuple[str, str, bool, tuple[tuple[str, float], ...]]
