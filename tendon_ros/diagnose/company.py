@@ -60,7 +60,7 @@ def companies(
     def without_all(members: tuple[int, ...]) -> Fit:
         if members not in fits:
             model = final.model.without(*members)
-            fits[members] = problem.fitted(model, rounds=6, accuracy=1e-3)
+            fits[members] = problem.fitted(model, rounds=6, accuracy=2e-3)
         return fits[members]
 
     def more_together(pair: tuple[int, int]) -> float:
