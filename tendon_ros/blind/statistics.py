@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 
+import numpy as np
+from scipy.stats import binom
+
 
 @dataclass(frozen=True)
 class Fraction:
@@ -74,3 +77,23 @@ def calibration_error(bins: Sequence[Bin]) -> float:
     if not total:
         return math.nan
     return sum(b.true.of * abs(b.true.value - b.stated) for b in bins) / total
+
+
+def error_by_chance(bins: Sequence[Bin]) -> float:
+    """
+    Return the calibration error to expect where every stated probability is right.
+
+    A few probabilities never come true in just the parts that they state.
+
+    :param bins: of :func:`reliability`.
+    :return: the mean of :func:`calibration_error`; NaN of nothing.
+    """
+    total = sum(b.true.of for b in bins)
+    if not total:
+        return math.nan
+    expected = 0.0
+    for b in bins:
+        counts = np.arange(b.true.of + 1)
+        off = np.abs(counts - b.true.of * b.stated)
+        expected += float(off @ binom.pmf(counts, b.true.of, b.stated))
+    return expected / total

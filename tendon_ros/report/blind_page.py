@@ -11,7 +11,7 @@ from typing import Any
 from tendon_ros import __version__
 from tendon_ros.blind.judge import FOREIGN, KNOWN
 from tendon_ros.blind.score import EVERY, Row, Score
-from tendon_ros.blind.statistics import Fraction
+from tendon_ros.blind.statistics import error_by_chance, Fraction
 from tendon_ros.report.blind_figures import calibration_figure, confusion_figure, shrink_figure
 from tendon_ros.report.page import html, markdown, Page, Picture, Prose, Section, Table, write
 
@@ -66,8 +66,9 @@ def summary(score: Score) -> tuple[str, ...]:
         f'{cases} cases of seed {about["seed"]} ({about["kind"]}), rig {about["bench"]}, '
         f"nuisance {100 * about['nuisance']:g} %. Intervals are Wilson's, 95 %.",
         f'Expected calibration error {_number(score.calibration_error, 3)} over '
-        f'{sum(b.true.of for b in score.bins)} stated probabilities; of {idle.of} wrong causes '
-        f'{idle} shrink the gap by less than 1.1.',
+        f'{sum(b.true.of for b in score.bins)} stated probabilities '
+        f'({_number(error_by_chance(score.bins), 3)} on average, were each of so few right); '
+        f'of {idle.of} wrong causes {idle} shrink the gap by less than 1.1.',
     ]
     if refused or score.missing:
         lines.append(f'{refused} cases were refused, {score.missing} have no result yet.')
@@ -199,6 +200,7 @@ def _numbers(score: Score) -> dict[str, Any]:
         'about': score.about,
         'rows': [{key: plain(value) for key, value in vars(row).items()} for row in score.rows],
         'calibration_error': plain(score.calibration_error),
+        'calibration_error_by_chance': plain(error_by_chance(score.bins)),
         'bins': [{'stated': b.stated, 'true': plain(b.true)} for b in score.bins],
         'confusion': [list(entry) for entry in score.confusion],
         'wrong_causes_shrink': list(score.idle),

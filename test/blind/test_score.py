@@ -5,6 +5,7 @@ import math
 import sys
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tendon_ros.base.errors import RecordingError
@@ -12,7 +13,12 @@ from tendon_ros.blind.case import Settings
 from tendon_ros.blind.judge import judged
 from tendon_ros.blind.run import run
 from tendon_ros.blind.score import score, summed, together
-from tendon_ros.blind.statistics import calibration_error, Fraction, reliability
+from tendon_ros.blind.statistics import (
+    calibration_error,
+    error_by_chance,
+    Fraction,
+    reliability,
+)
 from tendon_ros.blind.store import make, read_json
 from tendon_ros.diagnose.result import Diagnosis
 from tendon_ros.report.blind_page import score_markdown, write_scoreboard
@@ -134,6 +140,18 @@ def test_calibration():
     assert calibration_error(reliability(honest)) == pytest.approx(0.0)
     boasting = [(0.9, n < 5) for n in range(10)]
     assert calibration_error(reliability(boasting)) == pytest.approx(0.4)
+
+
+def test_few_probabilities_that_are_right_are_off_by_chance():
+    rng = np.random.default_rng(0)
+    stated = [0.15] * 3 + [0.55] * 4 + [0.93] * 12
+    drawn = [
+        calibration_error(reliability([(p, bool(rng.random() < p)) for p in stated]))
+        for _ in range(3000)
+    ]
+    bins = reliability([(p, True) for p in stated])
+    assert error_by_chance(bins) == pytest.approx(np.mean(drawn), rel=0.03)
+    assert math.isnan(error_by_chance(()))
 
 
 def test_rows_and_page(tmp_path):
