@@ -17,7 +17,7 @@ from tendon_ros.diagnose.parts import is_part, plain, widened
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Proposal, Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
@@ -214,7 +214,7 @@ class Challenge:
         def careful(rival: Rival) -> Fit:
             # derivatives of another state stall a fit: two places then seem to differ that do not;
             # when events were is found in the second fit
-            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=2e-3)
+            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=UNTIMED)
             if fit.cost <= equal:
                 return fit
             return self._problem.fitted(fit.model, rounds=6, accuracy=1e-3)

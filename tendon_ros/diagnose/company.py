@@ -19,7 +19,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import foretell, probability, signs_beside
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, UNTIMED
 
 #: times what each is missed alone that two causes must be missed together
 MAKES_UP = 2.0
@@ -60,7 +60,7 @@ def companies(
     def without_all(members: tuple[int, ...]) -> Fit:
         if members not in fits:
             model = final.model.without(*members)
-            fits[members] = problem.fitted(model, rounds=6, accuracy=2e-3)
+            fits[members] = problem.fitted(model, rounds=6, accuracy=UNTIMED)
         return fits[members]
 
     def more_together(pair: tuple[int, int]) -> float:

@@ -28,7 +28,8 @@ MOVES = 2
 #: takes such derivatives anew where it seems to end
 FAR, LOOKS = 0.3, 1
 BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
-CAREFUL = 1e-3  # accuracy from which on they are
+#: accuracy from which on they are; and of fits that are as careful but for when events were
+CAREFUL, UNTIMED = 1e-3, 2e-3
 
 
 @dataclass(frozen=True)

@@ -34,12 +34,9 @@ ROUGH = 2e-5  # the same where nothing that is measured notices
 #: of the noise: what that may change of the file's model. Dry friction makes it some five times
 #: more, and derivatives are taken from changes of a tenth
 UNNOTICED = 3e-3
-#: [bytes] of predictions that are remembered: a third of what is asked was asked a moment ago,
+#: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
 REMEMBERED = 3e7
-
-#: an effect in force that can be looked up: effect, place, whether instead, parameters
-Key = tuple[str, str, bool, tuple[tuple[str, float], ...]]
 
 
 class Rollouts:
@@ -139,7 +136,7 @@ class Rollouts:
         found = []
         for n, own in enumerate(uses):
             if asked is None or asked[n]:
-                found.append(self._one(n, tuple(_key(use) for use in own)))
+                found.append(self._one(n, tuple(own)))
             else:
                 segment = self.segments[n]
                 found.append(np.zeros((len(segment.measured), len(segment.time))))
@@ -195,10 +192,9 @@ class Rollouts:
         )
         return rows, numbers
 
-    def _computed(self, n: int, keys: tuple[Key, ...]) -> FloatArray:
+    def _computed(self, n: int, uses: tuple[EffectUse, ...]) -> FloatArray:
         """Return all channels of a segment; nobody may write into what is remembered."""
         segment = self.segments[n]
-        uses = [EffectUse(effect, place, dict(of), instead) for effect, place, instead, of in keys]
         try:
             rows, numbers = self._rolled(n, uses)
         except (SimulationError, EffectError):
@@ -248,11 +244,6 @@ def modified(instrument: Instrument, effects: Sequence[EffectUse]) -> Numbers:
             numbers.kind, index = place_index(instrument, use.place)
             effect.modify(numbers, index, **{**effect.neutral, **use.parameters})
     return numbers
-
-
-def _key(use: EffectUse) -> Key:
-    """Return what tells an effect in force from another."""
-    return use.effect, use.place, use.instead, tuple(use.parameters.items())
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import drives
+from tendon_ros.identify.means import binned
 from tendon_ros.identify.smoothing import at_rest, smoothed
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
@@ -140,7 +141,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     for sensor in instrument.sensors:
         if sensor.channel in known or sensor.channel not in recording:
             continue
-        value, noise = _binned(recording[sensor.channel], sensor, start, period, bins)
+        value, noise = binned(recording[sensor.channel], sensor, start, period, bins)
         measured.append(Measured(sensor, value, np.full(bins, noise), noise))
     return Segment(
         name=recording.name,
@@ -232,35 +233,6 @@ def reading_error(channel: Channel, sensor: Sensor) -> float:
     if not steps.size:
         return 0.0
     return float(np.quantile(steps, 0.02) / np.sqrt(12.0))
-
-
-def _binned(
-    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
-) -> tuple[FloatArray, float]:
-    """Return the means over bins, NaN where empty, and the noise that they keep."""
-    # a stamp on an edge belongs to the bin that begins there, whatever its last digit says
-    index = np.floor((channel.time - start) / period + 1e-6).astype(np.int64)
-    inside = (index >= 0) & (index < bins)
-    count = np.bincount(index[inside], minlength=bins).astype(np.float64)
-    total = np.bincount(index[inside], weights=channel.value[inside], minlength=bins)
-    moment = np.bincount(index[inside], weights=channel.time[inside] - start, minlength=bins)
-    with np.errstate(invalid='ignore', divide='ignore'):
-        value = total / count
-        late = moment / count - period * (np.arange(bins) + 0.5)
-    known = count > 0
-    if known.sum() > 2:
-        # the mean belongs to the mean of the stamps, which need not be the bin's middle
-        slope = np.gradient(
-            np.where(
-                known, value, np.interp(np.arange(bins), np.flatnonzero(known), value[known])
-            ),
-            period,
-        )
-        value = np.where(known, value - slope * late, np.nan)
-    quantised = sensor.resolution / np.sqrt(12.0)
-    per_bin = max(1.0, float(np.median(count[known]))) if known.any() else 1.0
-    noise = float(np.hypot(quantised, sensor.noise / np.sqrt(per_bin)))
-    return value, noise
 
 
 def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Segment | None:

@@ -174,6 +174,10 @@ class EffectUse:
     parameters: Mapping[str, float]
     instead: bool = False
 
+    def __hash__(self) -> int:
+        # a mapping has none of its own
+        return hash((self.effect, self.place, frozenset(self.parameters.items()), self.instead))
+
 
 @dataclass(frozen=True)
 class Instrument:
