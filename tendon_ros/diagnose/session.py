@@ -158,7 +158,8 @@ def _searched(
     """Search, and on where noise, or blocks that were held out, held something to be found."""
     found = Search(ready.problem, candidates, jobs, report, memory).run()
     again = ready.heard_again(found.final.model)
-    if again.quieter(ready):
+    # what stands in for something unknown may take noise away as well, and tells no more
+    if again.quieter(ready) and not hopeless(ready.problem, found.start, found.final):
         report('looking again: what was taken for noise was not', 0.0)
         ready = again
         found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()

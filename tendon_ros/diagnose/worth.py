@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.form import form_power, form_profile, own_power
+from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.effects import find
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -53,12 +56,21 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     form = own_power(problem, start) + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time
         return gain > TIMES_EVENT * form or gain > TAKES_EVENT * problem.structured(before.left)
+    if gain > form:
+        return True
     # what the form of a law leaves has no other cause that would explain most of it
-    if gain > form or gain > TAKES * problem.structured(before.left):
-        return True
-    if _most_of_one(problem, start, before, after, form):
-        return True
-    return _apart(before, after, profile)
+    most = (
+        gain > TAKES * problem.structured(before.left)
+        or _most_of_one(problem, start, before, after, form)
+        or _apart(before, after, profile)
+    )
+    return most and not _bends(problem, after, new)
+
+
+def _bends(problem: Problem, after: Fit, new: Set[Candidate]) -> bool:
+    """Return whether new causes undo others: the difference gives one law another form."""
+    undone = undoing(problem, after)
+    return bool(undone) and new <= {after.model.causes[k] for k in undone}
 
 
 def stands_out(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
