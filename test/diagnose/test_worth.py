@@ -66,9 +66,15 @@ def test_laws_may_be_wrong_where_they_act_and_not_elsewhere(limited):
     assert np.quantile(profile, 0.3) < 0.01 * profile.max()
 
 
-@pytest.mark.parametrize('silent', [True, False])
-def test_a_weak_cause_counts_where_the_strong_one_is_silent(limited, monkeypatch, silent):
+@pytest.mark.parametrize(
+    ('silent', 'undone', 'worth_it'), [(True, 0, True), (False, 0, False), (True, 2, False)]
+)
+def test_a_weak_cause_counts_where_the_strong_one_is_silent(
+    limited, monkeypatch, silent, undone, worth_it
+):
     problem, start, state = limited
+    # what it would explain of the form of the strong one by taking it back is that form
+    monkeypatch.setattr(worth, 'undoing', lambda *_: frozenset(range(undone)))
     quiet = np.arange(len(state.left)) % 100 < 60
     profile = np.where(quiet, 0.0, 1e4)  # so strong that its form hides everything, on average
     monkeypatch.setattr(worth, 'form_profile', lambda *_: profile)
@@ -77,7 +83,7 @@ def test_a_weak_cause_counts_where_the_strong_one_is_silent(limited, monkeypatch
     before = replace(state, left=off, cost=float(off @ off))
     model = state.model.joined(BIAS, {'torque': 0.01})
     after = replace(state, left=left, cost=float(left @ left), model=model)
-    assert worthwhile(problem, start, before, after) is silent
+    assert worthwhile(problem, start, before, after) is worth_it
 
 
 def test_the_effects_of_a_file_have_a_form_too(body, rubbing, measured_on):
