@@ -1,11 +1,11 @@
 """
 Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.grasper FILE.npz``.
 
-Trains on six runs of three frequencies and two loads, or takes the instrument file of an earlier
-diagnosis, and says of the runs that it has not seen: the torque of the spindle predicted from the
-jaw's torque and the motion; the jaw's torque and angle estimated from the spindle, and from the
-motor alone, without and with knowing how fast the load changes. Standard output is a table, a
-picture goes to ``--figure``.
+Trains on six runs of three frequencies and two loads, or on ``--trained``, or takes the instrument
+file of an earlier diagnosis, and says of the runs that it has not seen: the torque of the spindle
+predicted from the jaw's torque and the motion; the jaw's torque and angle estimated from the
+spindle, and from the motor alone, without and with knowing how fast the load changes. Standard
+output is a table, a picture goes to ``--figure``.
 """
 
 from __future__ import annotations
@@ -91,6 +91,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
     parser.add_argument('file', help='Tool_5_Maryland_L_3.npz, or another of its kind')
     parser.add_argument('--instrument', help='of an earlier diagnosis, instead of a new one')
+    parser.add_argument(
+        '--trained', nargs='+', default=TRAINED, metavar='RUN', choices=EVERY,
+        help='runs to diagnose, speed and load as two digits; all others judge',
+    )  # fmt: skip
     parser.add_argument('--out', type=Path, default=Path('out/grasper.yaml'), help='file to write')
     parser.add_argument('--figure', type=Path, help='picture to write')
     args = parser.parse_args()
@@ -101,7 +105,7 @@ def main() -> None:
         found = load_instrument(args.instrument)
     else:
         outcome = diagnose(
-            [runs[key] for key in TRAINED],
+            [runs[key] for key in args.trained],
             plain,
             plan=False,
             report=lambda what, done: print(f'{done:4.0%} {what}', flush=True),
@@ -114,12 +118,12 @@ def main() -> None:
             print(f'{cause.probability:.2f} {cause.effect} {cause.place}{same}')
         for cause in outcome.diagnosis.beside:
             print(f'beside: {cause.probability:.2f} {cause.effect} {cause.place}')
-    held = [run for key, run in runs.items() if key not in TRAINED]
+    held = [run for key, run in runs.items() if key not in args.trained]
     print(f'{len(held)} runs that no fit has seen')
     for name, instrument in (('file', plain), ('diagnosed', found)):
         off = [a - b for _, a, b in (predicted(run, instrument) for run in held)]
         print(f'{name:10} spindle torque from jaw torque and motion {1e3 * rms(off):6.2f} mN m')
-    wander = wandered([runs[key] for key in TRAINED])
+    wander = wandered([runs[key] for key in args.trained])
     print(f'the load wanders by {1e3 * wander:.0f} mN m in a second, in the runs of the diagnosis')
     for name, channels, known in (
         ('spindle', SPINDLE, None),
