@@ -16,7 +16,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import foretell, probability, signs_beside
+from tendon_ros.diagnose.judge import probability, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.fit import Fit, UNTIMED
@@ -77,7 +77,7 @@ def companies(
             continue
         signs = signs_beside(problem, found, without)
         likely = probability(signs)
-        if likely < NAMED or not foretell(ready, found, without):
+        if likely < NAMED or spoils(ready, found, without):
             continue
         equal = [causes[k] for k in others]
         equal += [e for k in (first, *others) for e in weighed[k].equal]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.worth import gains, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
@@ -136,23 +137,9 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     return Signs(max(worth, 1e-9), in_one, left, explained, form, event, sum(kept))
 
 
-#: probability that a cause has at most which foretells nothing, which others undo, or which may be
-#: what laws get wrong once
+#: probability that a cause has at most which spoils what no fit saw, which others undo, or which
+#: may be what laws get wrong once
 IDLE = 0.3
-
-
-def foretell(ready: Prepared, found: Found, without: Fit) -> bool:
-    """
-    Return whether what a fit does without makes anything better on what no fit has seen.
-
-    :param ready: the problem.
-    :param found: what the search has found.
-    :param without: the fit without one cause, or without several.
-    :return: whether.
-    """
-    poorer = ready.held.left(without.model)
-    left = ready.held.left(found.final.model)
-    return float(poorer @ poorer) > float(left @ left)
 
 
 def foretells(ready: Prepared, found: Found, k: int) -> bool:
@@ -165,7 +152,30 @@ def foretells(ready: Prepared, found: Found, k: int) -> bool:
     :return: whether; an event need not have happened there.
     """
     happened = bool(found.final.model.causes[k].instants)
-    return happened or foretell(ready, found, found.without[k])
+    return happened or float(_foretold(ready, found, found.without[k]).sum()) > 0.0
+
+
+def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
+    """
+    Return whether what a fit does without makes worse what no fit has seen, by more than chance.
+
+    A weak cause that is there may lose there what it gains: seconds differ by more than it does.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param without: the fit without one cause, or without several.
+    :return: whether it loses more than seconds of no meaning would on average.
+    """
+    gain = _foretold(ready, found, without)
+    # what cannot be computed there is no help either
+    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain))
+
+
+def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:
+    """Return what a cause saves of squares in noise deviations that no fit saw, by the second."""
+    poorer = ready.held.left(without.model)
+    left = ready.held.left(found.final.model)
+    return np.bincount(ready.held.clusters(CLUSTER), weights=poorer**2 - left**2)
 
 
 def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
@@ -183,7 +193,9 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     luck = signs.event and signs.most < TIMES_EVENT * signs.form
     # and what a law gets wrong may be told by something else at its place
     drowned = signs.most < signs.beside
-    believed = foretells(ready, found, k) and not luck and not drowned
+    happened = bool(found.final.model.causes[k].instants)
+    spoilt = not happened and spoils(ready, found, found.without[k])
+    believed = not (spoilt or luck or drowned)
     return likely if believed else min(IDLE, likely)
 
 

@@ -2,12 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from tendon_ros.diagnose import judge
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.form import form_parts
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs, signs_beside
+from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs, signs_beside, spoils
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -45,6 +47,22 @@ def test_a_cause_that_spoils_what_was_not_fitted_does_not(ready):
     found.without.append(found.final)
     found.states.append(replace(found.final, model=wrong))
     assert not foretells(ready, found, 1)
+    assert spoils(ready, found, found.without[1])
+
+
+@pytest.mark.parametrize(
+    ('gained', 'spoilt'),
+    [
+        ([3.0, -4.0, -1.0], False),
+        ([-3.0, -4.0, -1.0], True),
+        ([np.inf, 1.0], False),
+        ([np.nan], True),
+    ],
+)
+def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch, gained, spoilt):
+    monkeypatch.setattr(judge, '_foretold', lambda *_: np.array(gained))
+    found = found_with(ready.problem, FRICTION)
+    assert spoils(ready, found, found.without[0]) is spoilt
 
 
 @pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
