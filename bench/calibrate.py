@@ -1,14 +1,15 @@
 """
 Calibrates the probabilities of a diagnosis on development seeds of the blind benchmark.
 
-``python -m bench.calibrate SEED CASES KEPT.jsonl`` diagnoses development cases in two processes,
-keeps what speaks for each cause and whether it is true, and prints the weights of a logistic
-regression for ``tendon_ros/diagnose/judge.py``. Cases that are kept already are not run again, so
-that a campaign can be continued and enlarged. Odd seeds are of the other bench.
+``python -m bench.calibrate KEPT.jsonl --seeds 1 2 --cases 16`` diagnoses development cases in two
+processes, keeps what speaks for each cause and whether it is true, and prints the weights of a
+logistic regression for ``tendon_ros/diagnose/judge.py``. Cases that are kept already are not run
+again, so that a campaign can be continued and enlarged. Odd seeds are of the other bench.
 """
 
 from __future__ import annotations
 
+import argparse
 from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict
 import json
@@ -20,7 +21,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from tendon_ros.base.threads import use_one_thread
-from tendon_ros.blind.case import made, Settings
+from tendon_ros.blind.case import made, PATTERN, Settings, STRATA
 from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.session import diagnose
 
@@ -29,9 +30,9 @@ DEVELOPMENT = 1000  # seeds below are for development
 RIDGE = np.array([0.0, 0.1, 0.1, 0.1])
 
 
-def one(seed: int, index: int) -> dict[str, Any]:
+def one(seed: int, index: int, strata: tuple[str, ...]) -> dict[str, Any]:
     """Diagnose one case, and say what spoke for each cause and whether it is true."""
-    case = made(seed, index, Settings(bench='other' if seed % 2 else 'bench'))
+    case = made(seed, index, Settings(bench='other' if seed % 2 else 'bench', strata=strata))
     recordings = list(case.recordings.values())
     outcome = diagnose(recordings, case.instrument, withhold=case.withhold, jobs=1, plan=False)
     truth = {(e['effect'], e['place']) for e in case.label['effects']}
@@ -61,15 +62,26 @@ def weights(rows: list[dict[str, Any]]) -> np.ndarray:
 
 def main() -> None:
     """Run what is missing, then print the weights and how they do."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
+    parser.add_argument('kept', type=Path, help='file to read and to append to')
+    parser.add_argument('--seeds', nargs='*', type=int, default=[], help=f'below {DEVELOPMENT}')
+    parser.add_argument('--cases', type=int, default=len(PATTERN), help='of each seed')
+    parser.add_argument('--strata', nargs='+', default=PATTERN, choices=STRATA)
+    args = parser.parse_args()
+    if any(seed >= DEVELOPMENT for seed in args.seeds):
+        parser.error(f'seeds from {DEVELOPMENT} on are for publishing')
     use_one_thread()
-    seed, cases, path = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
-    if seed >= DEVELOPMENT:
-        raise SystemExit(f'seed {seed}: is for publishing; calibrate on seeds below {DEVELOPMENT}')
+    path, strata = args.kept, tuple(args.strata)
     kept = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-    known = {(k['seed'], k['index']) for k in kept}
-    todo = [i for i in range(cases) if (seed, i) not in known]
+    known = {(k['seed'], k['index'], k['stratum']) for k in kept}
+    todo = [
+        (seed, index)
+        for seed in args.seeds
+        for index in range(args.cases)
+        if (seed, index, strata[index % len(strata)]) not in known
+    ]
     with ProcessPoolExecutor(2) as pool, path.open('a') as file:
-        for future in as_completed([pool.submit(one, seed, i) for i in todo]):
+        for future in as_completed([pool.submit(one, *case, strata) for case in todo]):
             kept.append(future.result())
             print(json.dumps(kept[-1]), file=file, flush=True)
             print(f'{len(kept)} cases', file=sys.stderr)

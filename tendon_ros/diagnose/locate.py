@@ -18,11 +18,16 @@ from tendon_ros.identify.fit import Fit, Problem
 FloatArray = NDArray[np.float64]
 
 SHOWN = 0.02  # shares below this are not listed
+FIRST = 3  # places of what stays, beside those that no channel tells from the first
 
 
 @dataclass(frozen=True)
 class Whereabouts:
-    """Where the gap lies, most first; and where and when what stays unexplained does."""
+    """
+    Where the gap lies, most first; and where and when what stays unexplained does.
+
+    After the first of the unexplained places come those that no channel tells from it.
+    """
 
     listed: tuple[Where, ...]
     unexplained: tuple[str, ...]
@@ -53,8 +58,9 @@ def whereabouts(
         _spread(powers, found.final.model.causes[k].place, gain, texts, part)
     rest: dict[tuple[str, str], float] = {}
     stays = left * len(believed.left)
+    places = Places(problem, believed)
     if left > 0.0:
-        shares = Places(problem, believed).shares()
+        shares = places.shares()
         total = sum(float(t.sum()) for _, t in shares) + 1e-9
         for place, taken in shares:
             _spread(rest, place, np.maximum(taken, 0.0), texts, stays * float(taken.sum()) / total)
@@ -71,10 +77,11 @@ def whereabouts(
     for (place, regime), value in rest.items():
         by_place[place] = by_place.get(place, 0.0) + value
         by_regime[regime] = by_regime.get(regime, 0.0) + value
-    places = sorted(by_place, key=lambda p: -by_place[p])
+    first = sorted(by_place, key=lambda p: -by_place[p])[:FIRST]
+    blamed = dict.fromkeys([*first[:1], *(places.same(first[0]) if first else []), *first[1:]])
     return Whereabouts(
         tuple(sorted(listed, key=lambda w: -w.share)),
-        tuple(places[:3]),
+        tuple(blamed),
         max(by_regime, key=lambda r: by_regime[r]) if by_regime else '',
     )
 

@@ -26,6 +26,7 @@ PIECE = 0.12  # [s] over which an unknown cause is taken as constant
 ALIKE = 0.75  # part of the best place's gain from which on another may be the one
 TIED = 0.9  # part of the best odds from which on a law that explains more decides
 LEVELS = 8  # of what a place feels
+SAME = 0.99  # part of what one place could answer that another can from which on they are as one
 
 
 class Places:
@@ -99,6 +100,27 @@ class Places:
             left = kept
             del rest[best]
         return found
+
+    def same(self, place: str) -> list[str]:
+        """
+        Return the places that only a law could tell from one, and no channel can.
+
+        A motor's torque and a torque on the pulley that it turns are such.
+
+        :param place: which place.
+        :return: the others, in no order that means anything.
+        """
+        own = self._directions[place]
+
+        def answered(by: FloatArray, of: FloatArray) -> float:
+            square = np.maximum(self._summed(by**2), 1e-300)
+            return float((self._summed(by * of) ** 2 / square).sum() / (of @ of))
+
+        return [
+            name
+            for name, other in self._directions.items()
+            if name != place and min(answered(own, other), answered(other, own)) > SAME
+        ]
 
     def _imitated(
         self, left: FloatArray, moved: FloatArray, direction: FloatArray

@@ -45,6 +45,7 @@ from tendon_ros.report.diagnosis_words import (
     effect_words,
     inside,
     joined,
+    likely_at,
     number,
     percent,
     place_words,
@@ -228,7 +229,7 @@ def _rest(diagnosis: Diagnosis) -> Section:
         'catalogue does not have.'
     )
     if rest.where and rest.probability >= _LIKELY:
-        text += f' What remains lies at {joined(place_words(p) for p in rest.where)}'
+        text += f' What remains lies {likely_at(rest.where)}'
         text += f' ({rest.regime}).' if rest.regime else '.'
     blocks: list[Block] = [Prose(text)]
     above = [g for g in diagnosis.gap if in_floors(g)[1] > _CLEARLY]

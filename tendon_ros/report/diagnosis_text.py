@@ -21,6 +21,7 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     effect_words,
     inside,
+    likely_at,
     moved_words,
     number,
     percent,
@@ -136,8 +137,7 @@ def _ratio(value: float) -> str:
 def _rest(diagnosis: Diagnosis) -> list[str]:
     rest = diagnosis.unexplained
     likely = rest.probability >= 0.5
-    places = ', '.join(place_words(place) for place in rest.where if likely)
-    at = f', at {places}' if places else ''
+    at = f', {likely_at(rest.where)}' if rest.where and likely else ''
     during = f' ({rest.regime})' if rest.regime and likely else ''
     return [f'{percent(rest.probability)} that none of the known effects is behind it{at}{during}']
 

@@ -130,12 +130,12 @@ def headline(diagnosis: Diagnosis) -> str:
             f'The gap of {before} noise deviations stays unexplained: {named} {does} too little '
             f'of it or too uncertainly, {after} remain.{lies}'
         )
-    rest = [place_words(place) for place in diagnosis.unexplained.where[:2]]
-    at = f' at {joined(rest)}' if rest else ''
+    rest = diagnosis.unexplained.where
     during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
+    at = f', most likely at {place_words(rest[0])}{during},' if rest else during
     return (
         f'{named[:1].upper()}{named[1:]} {does} part of the gap: {_shrinks(diagnosis)} from '
-        f'{before} to {after} noise deviations. The rest{at}{during} is of no known cause.'
+        f'{before} to {after} noise deviations. The rest{at} is of no known cause.'
     )
 
 

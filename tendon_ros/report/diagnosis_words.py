@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 import math
 
 from tendon_ros.diagnose.evidence import Moved
@@ -59,6 +59,14 @@ def channel_words(channel: str) -> str:
     said = _GROUPS.get(group, 'load cell' if group == 'load_cell' else '')
     words = (joint, said, _QUANTITIES.get(quantity, quantity))
     return ' '.join(part for part in words if part)
+
+
+def likely_at(places: Sequence[str]) -> str:
+    """Return places, the likeliest first, as a part of a sentence; '' where there are none."""
+    if not places:
+        return ''
+    first, *others = [place_words(place) for place in places]
+    return f'most likely at {first}, else at {" or ".join(others)}' if others else f'at {first}'
 
 
 def joined(texts: Iterable[str]) -> str:

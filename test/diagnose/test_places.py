@@ -36,6 +36,14 @@ def test_a_place_is_told_by_direction_and_by_what_it_feels(blamed, effect, place
     assert found[0][0] == place
 
 
+def test_places_that_no_channel_tells_apart_are_the_same(bench, measured_on):
+    problem = prepared([measured_on(bench, touching=True)], bench).problem
+    places = Places(problem, problem.fitted(problem.empty))
+    assert places.same('pulley_M') == ['motor_M']
+    assert places.same('motor_L') == ['pulley_L']
+    assert places.same('pulley_3') == []
+
+
 def test_what_places_take_adds_up_to_no_more_than_there_is(bench, measured_on):
     run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.2}))
     problem = prepared([run], bench).problem
