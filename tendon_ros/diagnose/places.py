@@ -10,9 +10,11 @@ what that place feels, its angle and direction, its torque or its force.
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import lfilter
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
@@ -24,8 +26,12 @@ FloatArray = NDArray[np.float64]
 
 PIECE = 0.12  # [s] over which an unknown cause is taken as constant
 ALIKE = 0.75  # part of the best place's gain from which on another may be the one
-TIED = 0.9  # part of the best odds from which on a law that explains more decides
+#: weight of what a function of what a place feels leaves, where any size at any time counts one
+LAWFUL = 0.1
+NOISE = 0.05  # power in noise deviations that says nothing of a place
 LEVELS = 8  # of what a place feels
+FINE = 24  # of an encoder's angle: an error of its wheel comes back within a turn
+RELAXING = (0.5, 4.0)  # [s] in which a cable forgets a force
 SAME = 0.99  # part of what one place could answer that another can from which on they are as one
 
 
@@ -81,31 +87,38 @@ class Places:
         found: list[tuple[str, FloatArray]] = []
         while rest and len(found) < most:
             trials = {place: self._imitated(left, moved, d) for place, d in rest.items()}
-            gains = {place: float(left @ left - t @ t) for place, (t, _) in trials.items()}
-            least = ALIKE * max(gains.values())
-            if least <= 0.0:
+            stays = {place: float(kept @ kept) for place, (kept, _) in trials.items()}
+            best = self._blamed(left, moved, stays)
+            if best is None:
                 break
-            # what a law of its own explains, against what even any size at any time leaves
-            lawful = {
-                place: self._lawful(place, left, moved)
-                for place, gain in gains.items()
-                if gain >= least
-            }
-            odds = {place: x / float(trials[place][0] @ trials[place][0])
-                    for place, x in lawful.items()}  # fmt: skip
-            tied = [place for place in odds if odds[place] >= TIED * max(odds.values())]
-            best = max(tied, key=lambda place: lawful[place])
             kept, moved = trials[best]
             found.append((best, left**2 - kept**2))
             left = kept
             del rest[best]
         return found
 
+    def _blamed(self, left: FloatArray, moved: FloatArray, stays: dict[str, float]) -> str | None:
+        """
+        Return the place to blame; None where none helps.
+
+        ``stays``: what even any size at any time at a place leaves. That decides; where it is
+        much alike, what a law of the place leaves does; and that alone where no channel can.
+        """
+        whole, noise = float(left @ left), NOISE * len(left)
+        least = ALIKE * (whole - min(stays.values()))
+        if least <= 0.0:
+            return None
+        near = {place: x + noise for place, x in stays.items() if whole - x >= least}
+        law = {p: max(whole - self._lawful(p, left, moved), 0.0) + noise for p in near}
+        best = min(near, key=lambda p: math.log(near[p]) + LAWFUL * math.log(law[p]))
+        alike = [place for place in (best, *self.same(best)) if place in near]
+        return min(alike, key=lambda place: law[place])
+
     def same(self, place: str) -> list[str]:
         """
         Return the places that only a law could tell from one, and no channel can.
 
-        A motor's torque and a torque on the pulley that it turns are such.
+        A motor's torque, its reading and a torque on the pulley that it turns are such.
 
         :param place: which place.
         :return: the others, in no order that means anything.
@@ -116,11 +129,14 @@ class Places:
             square = np.maximum(self._summed(by**2), 1e-300)
             return float((self._summed(by * of) ** 2 / square).sum() / (of @ of))
 
-        return [
+        names = [
             name
             for name, other in self._directions.items()
             if name != place and min(answered(own, other), answered(other, own)) > SAME
         ]
+        sensors = self._problem.rollouts.instrument.sensors
+        read = [s for s in sensors if s.kind == 'motor_torque' and s.name not in self._directions]
+        return [*names, *(s.name for s in read if f'motor_{s.of}' in (place, *names))]
 
     def _imitated(
         self, left: FloatArray, moved: FloatArray, direction: FloatArray
@@ -200,11 +216,16 @@ def _felt(problem: Problem, states: Sequence[Rows]) -> dict[str, FloatArray]:
     for i, pulley in enumerate(instrument.pulleys):
         angle, speed = [s.angle[:, i] for s in states], [s.velocity[:, i] for s in states]
         keep(f'pulley_{pulley.name}', _levels(angle, speed))
-        keep(f'encoder_{pulley.name}', _levels(angle, None))
+        keep(f'encoder_{pulley.name}', _levels(angle, None, FINE))
     names = [*(f'cable_{x.name}' for x in instrument.loops)]
     names += [f'coupling_{x.name}' for x in instrument.couplings]
     for i, place in enumerate(names):
-        keep(place, _rising([s.loop_force[:, i] for s in states]))
+        force = [s.loop_force[:, i] for s in states]
+        relaxed = [
+            [_relaxed(f, segment.time, tau) for tau in RELAXING]
+            for f, segment in zip(force, problem.rollouts.segments, strict=True)
+        ]
+        keep(place, [[*a, *b] for a, b in zip(_rising(force), relaxed, strict=True)])
     for j, motor in enumerate(instrument.motor_names):
         rows = _rising([s.effort[:, j] for s in states])
         others = [s.effort for s in states]
@@ -226,16 +247,23 @@ def _rising(values: Sequence[FloatArray]) -> list[list[FloatArray]]:
     return _levels(values, [np.gradient(v) for v in values])
 
 
+def _relaxed(force: FloatArray, time: FloatArray, tau: float) -> FloatArray:
+    """Return a force that follows another with a delay of first order, at rest before."""
+    kept = np.exp(-np.gradient(time).mean() / tau)
+    begun = force[0]
+    return np.asarray(begun + lfilter([1.0 - kept], [1.0, -kept], force - begun))
+
+
 def _levels(
-    values: Sequence[FloatArray], ways: Sequence[FloatArray] | None
+    values: Sequence[FloatArray], ways: Sequence[FloatArray] | None, count: int = LEVELS
 ) -> list[list[FloatArray]]:
     """Return indicators of levels, by direction where there is one, for each segment."""
     every = np.concatenate(values)
-    edges = np.linspace(every.min(), every.max() + 1e-12, LEVELS + 1)[1:-1]
+    edges = np.linspace(every.min(), every.max() + 1e-12, count + 1)[1:-1]
     found = []
     for n, value in enumerate(values):
         level = np.searchsorted(edges, value)
-        row = [(level == k).astype(np.float64) for k in range(LEVELS)]
+        row = [(level == k).astype(np.float64) for k in range(count)]
         if ways is not None:
             up = (ways[n] > 0.0).astype(np.float64)
             row = [r * way for r in row for way in (up, 1.0 - up)]

@@ -9,13 +9,14 @@ others in its place. The order in which causes were found therefore decides noth
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
@@ -156,16 +157,21 @@ class Search:
         return hopeless(self.problem, found.start, final) or bool(undoing(self.problem, final))
 
     def _better(self, *fits: Fit | None) -> Fit | None:
-        """Return the state that leaves least; of those that do alike, the simplest one."""
+        """
+        Return the state to go on from, by Bayes' information criterion.
+
+        What is left holds together for a second or so: seconds are counted, not samples.
+        """
         states = [fit for fit in fits if fit is not None]
         if not states:
             return None
-        least = min(states, key=lambda fit: fit.cost)
-        alike = least.cost + tie(self.problem, least) * len(least.left)
-        return min(
-            (fit for fit in states if fit.cost <= alike),
-            key=lambda fit: (sum(map(len, fit.model.z)), fit.cost),
-        )
+        seconds = 1.0 + float(self.problem.clusters(CLUSTER).max(initial=0))
+
+        def criterion(fit: Fit) -> float:
+            parameters = sum(map(len, fit.model.z))
+            return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
+
+        return min(states, key=criterion)
 
     def _astray(self, start: Fit, grown: Fit | None) -> bool:
         """

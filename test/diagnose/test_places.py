@@ -39,8 +39,8 @@ def test_a_place_is_told_by_direction_and_by_what_it_feels(blamed, effect, place
 def test_places_that_no_channel_tells_apart_are_the_same(bench, measured_on):
     problem = prepared([measured_on(bench, touching=True)], bench).problem
     places = Places(problem, problem.fitted(problem.empty))
-    assert places.same('pulley_M') == ['motor_M']
-    assert places.same('motor_L') == ['pulley_L']
+    assert places.same('pulley_M') == ['motor_M', 'torque_M']
+    assert places.same('motor_L') == ['pulley_L', 'torque_L']
     assert places.same('pulley_3') == []
 
 
