@@ -9,14 +9,13 @@ others in its place. The order in which causes were found therefore decides noth
 from __future__ import annotations
 
 from collections.abc import Sequence
-import math
 
 import numpy as np
 
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.intervals import CLUSTER
+from tendon_ros.diagnose.guesses import astray, better, under_way
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
@@ -40,9 +39,6 @@ ROUNDS = 6  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
 GAINED = 0.8
-#: deviations that a guess, and another number, has to have moved to be suspected of standing for
-#: a cause
-ASTRAY, PRESSED = 0.5, 2.0
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
 
@@ -117,9 +113,9 @@ class Search:
                     screen = Screen(self.problem, state, seen)
                     proposals = self._steps.screened(screen)
                 grown = self._grown(found, state, screen, proposals)
-                if turn == 0 and self._astray(found.start, grown):
+                if turn == 0 and astray(self.problem, found.start, grown):
                     others = self._from_the_file(found), self._without_sign(found)
-                    grown = self._better(grown, *others)
+                    grown = better(self.problem, grown, *others)
                 turn += 1
             if grown is not None:
                 state = grown
@@ -149,46 +145,12 @@ class Search:
                 fit = self._steps.from_afar(found.start.model.joined(candidate, there))
                 if fit is not None and self._believed(found, found.start, fit):
                     fits.append(fit)
-        return self._better(*fits)
+        return better(self.problem, *fits)
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""
         final = found.final
         return hopeless(self.problem, found.start, final) or bool(undoing(self.problem, final))
-
-    def _better(self, *fits: Fit | None) -> Fit | None:
-        """
-        Return the state to go on from, by Bayes' information criterion.
-
-        What is left holds together for a second or so: seconds are counted, not samples.
-        """
-        states = [fit for fit in fits if fit is not None]
-        if not states:
-            return None
-        seconds = 1.0 + float(self.problem.clusters(CLUSTER).max(initial=0))
-
-        def criterion(fit: Fit) -> float:
-            parameters = sum(map(len, fit.model.z))
-            return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
-
-        return min(states, key=criterion)
-
-    def _astray(self, start: Fit, grown: Fit | None) -> bool:
-        """
-        Return whether the numbers of the file may be far off where a search began.
-
-        They had to do without the causes: there, no cause may help any more, or a wrong one.
-        """
-        guessed = np.array([t.guessed for t in self.problem.tolerances], dtype=bool)
-        moved = np.abs(start.model.moved)
-        if moved[guessed].max(initial=0.0) > ASTRAY:
-            return True
-        if not moved[~guessed].max(initial=0.0) > PRESSED:
-            return False
-        # one cause that leaves nothing is right wherever it was found
-        if grown is None or len(grown.model.causes) > 1:
-            return True
-        return open_question(self.problem, grown)
 
     def _from_the_file(self, found: Found) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
@@ -200,7 +162,7 @@ class Search:
         for asked in (proposals, [p for p in proposals if not p.sizes]):
             alone = self._alone(file, asked)
             if alone is not None and self._believed(found, found.start, alone):
-                grown = self._better(grown, alone)
+                grown = better(self.problem, grown, alone)
         return grown
 
     def _alone(self, state: Fit, proposals: Sequence[Proposal]) -> Fit | None:
@@ -208,7 +170,12 @@ class Search:
         if not proposals:
             return None
         rivals = self._steps.fitted(state, best_of(proposals), 0.0)
-        return self._steps.settled(rivals[0].fit.model) if rivals else None
+        if not rivals:
+            return None
+        best, *others = (r.fit for r in rivals)
+        fits = [best, *under_way(self.problem, state, best, others)]
+        settled = [self._steps.settled(fit.model) for fit in fits]
+        return min(settled, key=lambda fit: fit.cost)
 
     def _grown(
         self, found: Found, before: Fit, screen: Screen, proposals: Sequence[Proposal]

@@ -1,0 +1,97 @@
+"""
+Guessed numbers may be far off where a search begins: which way to go with them.
+
+Where inertia, stiffness and preload are guesses, a wrong cause with wrong guesses may leave less
+at first than the right one, whose guesses have far to go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.intervals import CLUSTER
+from tendon_ros.diagnose.worth import open_question
+from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
+
+#: deviations that a guess, and another number, has to have moved to be suspected of standing for
+#: a cause
+ASTRAY, PRESSED = 0.5, 2.0
+#: times the least that a rough fit may leave to be followed where guesses are under way
+ROUGH = 1.5
+
+
+def astray(problem: Problem, start: Fit, grown: Fit | None) -> bool:
+    """
+    Return whether the numbers of the file may be far off where a search began.
+
+    They had to do without the causes: there, no cause may help any more, or a wrong one.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param grown: with the first causes, where there are any.
+    :return: whether to look from the file's own numbers, too.
+    """
+    if _farthest(problem, start.model.moved) > ASTRAY:
+        return True
+    known = ~_guessed(problem)
+    if not np.abs(start.model.moved)[known].max(initial=0.0) > PRESSED:
+        return False
+    # one cause that leaves nothing is right wherever it was found
+    if grown is None or len(grown.model.causes) > 1:
+        return True
+    return open_question(problem, grown)
+
+
+def under_way(problem: Problem, state: Fit, best: Fit, others: Sequence[Fit]) -> list[Fit]:
+    """
+    Return the rough fits that may end below the best: guesses that have far to go are not there.
+
+    :param problem: the data.
+    :param state: where the fits began.
+    :param best: the one that leaves least.
+    :param others: all others.
+    :return: those of them to be fitted carefully.
+    """
+    return [
+        fit
+        for fit in others
+        if fit.cost < ROUGH * best.cost
+        and _farthest(problem, fit.model.moved - state.model.moved) > ASTRAY
+    ]
+
+
+def better(problem: Problem, *fits: Fit | None) -> Fit | None:
+    """
+    Return the state to go on from, by Bayes' information criterion.
+
+    What is left holds together for a second or so: seconds are counted, not samples.
+
+    :param problem: the data.
+    :param fits: states with different causes.
+    :return: the best of them; None where there is none.
+    """
+    states = [fit for fit in fits if fit is not None]
+    if not states:
+        return None
+    seconds = 1.0 + float(problem.clusters(CLUSTER).max(initial=0))
+
+    def criterion(fit: Fit) -> float:
+        parameters = sum(map(len, fit.model.z))
+        return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
+
+    return min(states, key=criterion)
+
+
+def _farthest(problem: Problem, moved: FloatArray) -> float:
+    """Return how many deviations the guess that moves most moves."""
+    return float(np.abs(moved)[_guessed(problem)].max(initial=0.0))
+
+
+def _guessed(problem: Problem) -> NDArray[np.bool_]:
+    return np.array([t.guessed for t in problem.tolerances], dtype=np.bool_)
