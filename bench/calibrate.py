@@ -22,10 +22,10 @@ from scipy.optimize import minimize
 
 from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import made, PATTERN, Settings, STRATA
+from tendon_ros.blind.store import PUBLISHED
 from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.session import diagnose
 
-DEVELOPMENT = 1000  # seeds below are for development
 #: weights of a few dozen causes must not run away
 RIDGE = np.array([0.0, 0.1, 0.1, 0.1])
 
@@ -64,12 +64,12 @@ def main() -> None:
     """Run what is missing, then print the weights and how they do."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
     parser.add_argument('kept', type=Path, help='file to read and to append to')
-    parser.add_argument('--seeds', nargs='*', type=int, default=[], help=f'below {DEVELOPMENT}')
+    parser.add_argument('--seeds', nargs='*', type=int, default=[], help=f'below {PUBLISHED}')
     parser.add_argument('--cases', type=int, default=len(PATTERN), help='of each seed')
     parser.add_argument('--strata', nargs='+', default=PATTERN, choices=STRATA)
     args = parser.parse_args()
-    if any(seed >= DEVELOPMENT for seed in args.seeds):
-        parser.error(f'seeds from {DEVELOPMENT} on are for publishing')
+    if any(seed >= PUBLISHED for seed in args.seeds):
+        parser.error(f'seeds from {PUBLISHED} on are for publishing')
     use_one_thread()
     path, strata = args.kept, tuple(args.strata)
     kept = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []

@@ -1,0 +1,58 @@
+"""
+Where does what nothing explains lie? ``python -m bench.places --seeds 521 522 523``.
+
+Makes development cases of the blind benchmark whose effect is in no catalogue or withheld, fits
+the numbers of the file without any cause, and asks which place is to blame. Prints a line for
+each case and what is right: the first place, and with those that no channel tells from it.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from tendon_ros.base.threads import use_one_thread
+from tendon_ros.blind.case import Case, made, Settings
+from tendon_ros.blind.store import PUBLISHED
+from tendon_ros.diagnose.intake import admitted
+from tendon_ros.diagnose.places import Places
+from tendon_ros.diagnose.prepare import prepared
+
+STRATA = ('unknown', 'withheld', 'unknown')
+ROUNDS = (8, 6)  # of a fit, and of a second one with derivatives where the first has ended
+
+
+def blamed(case: Case) -> list[str]:
+    """Return the first place, and those that no channel tells from it."""
+    recordings = admitted(list(case.recordings.values()), case.instrument).recordings
+    problem = prepared(recordings, case.instrument).problem
+    fit = problem.fitted(problem.empty, rounds=ROUNDS[0])
+    places = Places(problem, problem.fitted(fit.model, rounds=ROUNDS[1]))
+    shares = places.shares(most=1)
+    return [shares[0][0], *places.same(shares[0][0])] if shares else []
+
+
+def main() -> None:
+    """Make the cases, ask, count."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
+    parser.add_argument('--seeds', nargs='+', type=int, required=True, help=f'below {PUBLISHED}')
+    parser.add_argument('--cases', type=int, default=30, help='of each seed')
+    args = parser.parse_args()
+    if any(seed >= PUBLISHED for seed in args.seeds):
+        parser.error(f'seeds from {PUBLISHED} on are for publishing')
+    use_one_thread()
+    cases = [(seed, index) for seed in args.seeds for index in range(args.cases)]
+    first = among = 0
+    for seed, index in cases:
+        settings = Settings(bench='other' if seed % 2 else 'bench', strata=STRATA)
+        case = made(seed, index, settings)
+        [effect] = case.label['effects']
+        places = blamed(case)
+        first += places[:1] == [effect['place']]
+        among += effect['place'] in places
+        told = f'{effect["effect"]} at {effect["place"]}'
+        print(f'{seed}/{index} {case.label["channels"]}: {told}: {", ".join(places)}', flush=True)
+    print(f'{len(cases)} cases, first {first}, with what no channel tells from it {among}')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,54 @@
+"""Guesses of the file that have far to go: the right cause is found beside them."""
+
+from dataclasses import replace
+
+import pytest
+
+from tendon_ros.diagnose.guesses import astray, better, under_way
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
+
+COULOMB = Candidate('coulomb_friction', 'pulley_axis')
+STRIBECK = Candidate('stribeck_friction', 'pulley_axis')
+
+
+@pytest.fixture(scope='module')
+def axis():
+    return load_instrument('driven_axis')
+
+
+@pytest.fixture(scope='module')
+def problem(axis, measured_on):
+    """Return a problem of an axis whose inertia is half of what the file guesses."""
+    pulleys = tuple(replace(p, inertia=0.5 * p.inertia) for p in axis.pulleys)
+    rig = replace(axis, pulleys=pulleys)
+    settings = (('duration', '6 s'), ('amplitude', '40 deg'))
+    friction = ('coulomb_friction', 'pulley_axis', {'torque': 0.05})
+    return prepared([measured_on(rig, friction, settings=settings)], axis).problem
+
+
+def test_guesses_that_moved_may_have_done_without_the_causes(problem):
+    start = problem.fitted(problem.empty)
+    assert astray(problem, start, None)
+    still = problem.fitted(problem.empty, rounds=0)
+    assert not astray(problem, still, still)
+
+
+def test_fits_are_followed_where_guesses_are_under_way(problem):
+    file = problem.fitted(problem.empty, rounds=0)
+    far = problem.fitted(problem.empty)
+    best = replace(far, cost=0.9 * far.cost)
+    assert under_way(problem, file, best, [far, file]) == [far]
+    assert under_way(problem, far, best, [far]) == []
+    assert under_way(problem, file, replace(far, cost=0.5 * far.cost), [far]) == []
+
+
+def test_more_parameters_have_to_explain_more(problem):
+    simple = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
+    values = {'static': 0.0, 'sliding': 0.05, 'speed': 0.1}
+    rich = replace(problem.fitted(problem.empty.joined(STRIBECK, values)), cost=0.99 * simple.cost)
+    assert better(problem, rich, None, simple) is simple
+    telling = replace(rich, cost=0.1 * simple.cost)
+    assert better(problem, telling, simple) is telling
+    assert better(problem, None) is None
