@@ -23,6 +23,7 @@ from tendon_ros.identify.screening import Proposal, Screen, Seen
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 MANY = 3  # causes from which on not every candidate challenges each of them
 REPLACED = 6  # causes at most that challenges replace
+CREEPING = 20  # rounds at most in which a fit comes to its end
 
 
 class Challenge:
@@ -67,12 +68,26 @@ class Challenge:
             self._seen = {}
             # who stood only just did so beside the one that has gone
             stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
+        changed |= self._converged(found)
         causes = found.final.model.causes
         found.rivals = [stood[c][1] for c in causes]
         found.without = [
             self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
         ]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
+
+    def _converged(self, found: Found) -> bool:
+        """
+        Fit the last state to its end; return whether that was anything.
+
+        Guesses creep along valleys: what they still gain would count against a small cause, since
+        the fit without it goes on where the fit with it has stopped.
+        """
+        state = self._problem.fitted(found.final.model, rounds=CREEPING, accuracy=1e-3)
+        if not state.cost < (1.0 - 1e-3) * found.final.cost:
+            return False
+        found.states[-1] = state
+        return True
 
     def _merge(self, found: Found) -> None:
         """Let one effect take the place of two at one place, if it does as well."""
