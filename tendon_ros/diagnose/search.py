@@ -127,7 +127,7 @@ class Search:
                 break
             # better causes may leave more to see: look again where a challenge has changed them
             self._challenge.of(found)
-            if found.final is state:
+            if found.final.model.causes == state.model.causes:
                 break
             gained = found.final.cost < GAINED * state.cost
             if self._imitates(found) and not gained:
