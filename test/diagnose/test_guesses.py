@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from tendon_ros.diagnose.challenge import Challenge
+from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, under_way
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -52,3 +55,15 @@ def test_more_parameters_have_to_explain_more(problem):
     telling = replace(rich, cost=0.1 * simple.cost)
     assert better(problem, telling, simple) is telling
     assert better(problem, None) is None
+
+
+def test_a_last_state_is_fitted_to_its_end(problem):
+    found = Found()
+    start = problem.fitted(problem.empty)
+    rough = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}), rounds=1)
+    found.states = [start, rough]
+    Challenge(Steps(problem, [COULOMB], 1, lambda *_: None)).of(found)
+    end = problem.fitted(rough.model, rounds=60, accuracy=1e-5)
+    assert found.final.cost < 0.99 * rough.cost
+    assert found.final.cost < 1.01 * end.cost
+    assert found.without[0].cost >= found.final.cost
