@@ -4,7 +4,7 @@ Calibrates the probabilities of a diagnosis on development seeds of the blind be
 ``python -m bench.calibrate KEPT.jsonl --seeds 1 2 --cases 16`` diagnoses development cases in two
 processes, keeps what speaks for each cause and whether it is true, and prints the weights of a
 logistic regression for ``tendon_ros/diagnose/judge.py``. Cases that are kept already are not run
-again, so that a campaign can be continued and enlarged. Odd seeds are of the other bench.
+again, so that a campaign can be continued and enlarged.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
+from bench.development import development
+from bench.development import seed as development_seed
 from tendon_ros.base.threads import use_one_thread
-from tendon_ros.blind.case import made, PATTERN, Settings, STRATA
-from tendon_ros.blind.store import PUBLISHED
+from tendon_ros.blind.case import PATTERN, STRATA
 from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.session import diagnose
 
@@ -32,7 +33,7 @@ RIDGE = np.array([0.0, 0.1, 0.1, 0.1])
 
 def one(seed: int, index: int, strata: tuple[str, ...]) -> dict[str, Any]:
     """Diagnose one case, and say what spoke for each cause and whether it is true."""
-    case = made(seed, index, Settings(bench='other' if seed % 2 else 'bench', strata=strata))
+    case = development(seed, index, strata)
     recordings = list(case.recordings.values())
     outcome = diagnose(recordings, case.instrument, withhold=case.withhold, jobs=1, plan=False)
     truth = {(e['effect'], e['place']) for e in case.label['effects']}
@@ -64,12 +65,10 @@ def main() -> None:
     """Run what is missing, then print the weights and how they do."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
     parser.add_argument('kept', type=Path, help='file to read and to append to')
-    parser.add_argument('--seeds', nargs='*', type=int, default=[], help=f'below {PUBLISHED}')
+    parser.add_argument('--seeds', nargs='*', type=development_seed, default=[])
     parser.add_argument('--cases', type=int, default=len(PATTERN), help='of each seed')
     parser.add_argument('--strata', nargs='+', default=PATTERN, choices=STRATA)
     args = parser.parse_args()
-    if any(seed >= PUBLISHED for seed in args.seeds):
-        parser.error(f'seeds from {PUBLISHED} on are for publishing')
     use_one_thread()
     path, strata = args.kept, tuple(args.strata)
     kept = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []

@@ -56,14 +56,7 @@ def whereabouts(
         gain = np.maximum(found.without[k].left ** 2 - found.final.left**2, 0.0)
         part = explained * worths[k] / sum(worths.values())
         _spread(powers, found.final.model.causes[k].place, gain, texts, part)
-    rest: dict[tuple[str, str], float] = {}
-    stays = left * len(believed.left)
-    places = Places(problem, believed)
-    if left > 0.0:
-        shares = places.shares()
-        total = sum(float(t.sum()) for _, t in shares) + 1e-9
-        for place, taken in shares:
-            _spread(rest, place, np.maximum(taken, 0.0), texts, stays * float(taken.sum()) / total)
+    rest, blamed = _blamed(problem, believed, left * len(believed.left), texts)
     for key, value in rest.items():
         powers[key] = powers.get(key, 0.0) + value
     whole = sum(powers.values()) + 1e-30
@@ -72,18 +65,32 @@ def whereabouts(
         for (p, r), v in powers.items()
         if v / whole >= SHOWN
     ]
-    by_place: dict[str, float] = {}
     by_regime: dict[str, float] = {}
-    for (place, regime), value in rest.items():
-        by_place[place] = by_place.get(place, 0.0) + value
+    for (_, regime), value in rest.items():
         by_regime[regime] = by_regime.get(regime, 0.0) + value
-    first = sorted(by_place, key=lambda p: -by_place[p])[:FIRST]
-    blamed = dict.fromkeys([*first[:1], *(places.same(first[0]) if first else []), *first[1:]])
     return Whereabouts(
         tuple(sorted(listed, key=lambda w: -w.share)),
-        tuple(blamed),
+        blamed,
         max(by_regime, key=lambda r: by_regime[r]) if by_regime else '',
     )
+
+
+def _blamed(
+    problem: Problem, believed: Fit, stays: float, texts: NDArray[np.str_]
+) -> tuple[dict[tuple[str, str], float], tuple[str, ...]]:
+    """Share out what stays; the places with it, most first, and who is the same as the first."""
+    rest: dict[tuple[str, str], float] = {}
+    if not stays > 0.0:
+        return rest, ()
+    places = Places(problem, believed)
+    taken = {place: power for place, power in places.shares() if power.sum() > 0.0}
+    total = sum(float(power.sum()) for power in taken.values())
+    for place, power in taken.items():
+        part = stays * float(power.sum()) / total
+        _spread(rest, place, np.maximum(power, 0.0), texts, part)
+    order = sorted(taken, key=lambda p: -float(taken[p].sum()))[:FIRST]
+    same = [name for first in order[:1] for name in places.same(first)]
+    return rest, tuple(dict.fromkeys([*order[:1], *same, *order[1:]]))
 
 
 def _spread(

@@ -71,8 +71,11 @@ class Places:
         readings: dict[str, FloatArray] = {}
         for segment, channel, span in problem.spans():
             sensor = problem.rollouts.segments[segment].measured[channel].sensor
-            place = f'motor_{sensor.of}' if sensor.kind == 'motor_torque' else sensor.name
-            readings.setdefault(place, np.zeros_like(self._left))[span] = 1.0
+            errs = [sensor.name]
+            if sensor.kind == 'motor_torque':  # the motor itself may give another torque
+                errs.insert(0, f'motor_{sensor.of}')
+            for place in errs:
+                readings.setdefault(place, np.zeros_like(self._left))[span] = 1.0
         return [*found, *readings.items()]
 
     def shares(self, most: int = 4) -> list[tuple[str, FloatArray]]:
@@ -129,14 +132,11 @@ class Places:
             square = np.maximum(self._summed(by**2), 1e-300)
             return float((self._summed(by * of) ** 2 / square).sum() / (of @ of))
 
-        names = [
+        return [
             name
             for name, other in self._directions.items()
             if name != place and min(answered(own, other), answered(other, own)) > SAME
         ]
-        sensors = self._problem.rollouts.instrument.sensors
-        read = [s for s in sensors if s.kind == 'motor_torque' and s.name not in self._directions]
-        return [*names, *(s.name for s in read if f'motor_{s.of}' in (place, *names))]
 
     def _imitated(
         self, left: FloatArray, moved: FloatArray, direction: FloatArray

@@ -62,9 +62,7 @@ def channel_words(channel: str) -> str:
 
 
 def likely_at(places: Sequence[str]) -> str:
-    """Return places, the likeliest first, as a part of a sentence; '' where there are none."""
-    if not places:
-        return ''
+    """Return one place or more, the likeliest first, as a part of a sentence."""
     first, *others = [place_words(place) for place in places]
     return f'most likely at {first}, else at {" or ".join(others)}' if others else f'at {first}'
 
