@@ -11,6 +11,7 @@ from itertools import combinations
 import math
 
 from tendon_ros.diagnose.bent import degenerate, excuses
+from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parts import is_part, plain, widened
@@ -90,17 +91,23 @@ class Challenge:
         return True
 
     def _merge(self, found: Found) -> None:
-        """Let one effect take the place of two at one place, if it does as well."""
+        """
+        Let one effect take the place of two on one body, if it does as well.
+
+        An eccentric wheel of a motor that gives more torque than it says, for one, is an encoder
+        that counts too few.
+        """
+        instrument = self._problem.rollouts.instrument
         for one, two in combinations(found.final.model.causes, 2):
             causes = found.final.model.causes
-            if one.place != two.place or not {one, two} <= set(causes):
+            if not of_one_body(instrument, one, two) or not {one, two} <= set(causes):
                 continue
             state = found.final
             model = state.model.without(causes.index(one), causes.index(two))
             smaller = self._problem.fitted(model, self._problem.slopes(state), 8, 1e-3)
             if not math.isfinite(smaller.cost):
                 continue
-            among = [c for c in self._steps.candidates if c.place == one.place]
+            among = [c for c in self._steps.candidates if of_one_body(instrument, one, c)]
             proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
             rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
             rivals = self._sharpened(found, smaller, rivals)
@@ -210,8 +217,11 @@ class Challenge:
         """Return who might replace one of many causes: kin, and what explained much at a time."""
         if len(found.final.model.causes) < MANY:
             return None
+        instrument = self._problem.rollouts.instrument
         kin = [
-            c for c in self._steps.candidates if c.effect == cause.effect or c.place == cause.place
+            c
+            for c in self._steps.candidates
+            if c.effect == cause.effect or of_one_body(instrument, c, cause)
         ]
         telling = [c for c in self._steps.candidates if (c.effect, c.place) in found.telling]
         return list(dict.fromkeys([*kin, *telling]))
