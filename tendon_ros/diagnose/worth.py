@@ -30,6 +30,9 @@ HOPELESS, MOST_LEFT = 10.0, 0.15
 HALF = 0.5
 #: part of the samples that tells anything of a cause which shows there alone
 ENOUGH = 0.1
+#: form of a law from which on another effect of its kind may only give it another form: creep with
+#: one time constant more, hysteresis with one more bend
+COARSE = 0.1
 #: times the form of other laws that an event must explain, for it fits whatever they once get
 #: wrong; or the part of what is left
 TIMES_EVENT, TAKES_EVENT = 10.0, 0.8
@@ -60,11 +63,17 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         return True
     # what the form of a law leaves has no other cause that would explain most of it
     most = (
-        gain > TAKES * problem.structured(before.left)
+        (gain > TAKES * problem.structured(before.left) and not _completes(before, new))
         or _most_of_one(problem, start, before, after, form)
         or _apart(before, after, profile)
     )
     return most and not _bends(problem, after, new)
+
+
+def _completes(before: Fit, new: Set[Candidate]) -> bool:
+    """Return whether coarse laws of the same kind act already, to which these lend their form."""
+    coarse = {c.effect for c in before.model.causes if find(c.effect).form >= COARSE}
+    return {c.effect for c in new} <= coarse
 
 
 def _bends(problem: Problem, after: Fit, new: Set[Candidate]) -> bool:

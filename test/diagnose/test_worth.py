@@ -86,6 +86,37 @@ def test_a_weak_cause_counts_where_the_strong_one_is_silent(
     assert worthwhile(problem, start, before, after) is worth_it
 
 
+@pytest.mark.parametrize(
+    ('more', 'worth_it'),
+    [
+        (Candidate('cable_creep', 'cable_m1'), False),
+        (Candidate('pretension', 'cable_m1'), True),
+    ],
+)
+def test_creep_gives_no_other_creep_the_form_that_its_law_has_not(
+    bench, measured_on, monkeypatch, more, worth_it
+):
+    creep = Candidate('cable_creep', 'cable_12')
+    values = {'fraction': 0.3, 'time': 2.0, 'share': 1.0}
+    run = measured_on(bench, (creep.effect, creep.place, values), touching=True)
+    problem = prepared([run], bench).problem
+    state = problem.fitted(problem.empty.joined(creep, values), rounds=2)
+    model = state.model.joined(more, {p.name: p.typical for p in more.parameters})
+    noise = np.random.default_rng(0).standard_normal(len(state.left))
+
+    def leaving(off, causes):
+        return replace(
+            state, left=noise + off, cost=float(np.sum((noise + off) ** 2)), model=causes
+        )
+
+    start, before, after = (
+        leaving(3.0, problem.empty), leaving(0.6, state.model), leaving(0.0, model)
+    )  # fmt: skip
+    # more than any other cause explains, and less than the form of what is there may be
+    monkeypatch.setattr(worth, 'form_profile', lambda *_: np.full(len(noise), 5.0))
+    assert worthwhile(problem, start, before, after) is worth_it
+
+
 def test_the_effects_of_a_file_have_a_form_too(body, rubbing, measured_on):
     friction = EffectUse('coulomb_friction', 'pulley_body', {'torque': 0.2})
     run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}), settings=WIDE)
