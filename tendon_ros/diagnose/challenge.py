@@ -14,6 +14,7 @@ from tendon_ros.diagnose.bent import degenerate, excuses
 from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.parts import is_part, plain, widened
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
@@ -111,10 +112,20 @@ class Challenge:
             proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
             rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
             rivals = self._sharpened(found, smaller, rivals)
-            allowed = tie(self._problem, state) * len(state.left)
-            if rivals and rivals[0].fit.cost - state.cost < allowed:
+            if rivals and self._as_good(rivals[0].fit, state):
                 self._stood = {}
                 found.states[-1] = self._steps.settled(rivals[0].fit.model)
+
+    def _as_good(self, simpler: Fit, state: Fit) -> bool:
+        """
+        Return whether a state with fewer parameters does as well.
+
+        Where laws and machine are far apart a tie is wide: it has to be the better bet as well.
+        """
+        behind = (simpler.cost - state.cost) / len(state.left)
+        if behind > tie(self._problem, state):
+            return False
+        return criterion(self._problem, simpler) < criterion(self._problem, state)
 
     def _clearly(self, state: Fit, without: Fit, rivals: Sequence[Rival]) -> bool:
         """Return whether a cause is missed so much more than any rival makes up for."""
@@ -256,7 +267,7 @@ class Challenge:
             more = len(rival.parameters) - len(cause.parameters)
             ahead = (state.cost - fit.cost) / len(state.left)
             if more < 0:
-                return ahead > -tie(self._problem, state)
+                return self._as_good(fit, state)
             if more > 0:
                 return ahead > tie(self._problem, fit)
             return fit.cost < 0.99 * state.cost

@@ -8,12 +8,11 @@ at first than the right one, whose guesses have far to go.
 from __future__ import annotations
 
 from collections.abc import Sequence
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.intervals import CLUSTER
+from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.worth import open_question
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -70,22 +69,12 @@ def better(problem: Problem, *fits: Fit | None) -> Fit | None:
     """
     Return the state to go on from, by Bayes' information criterion.
 
-    What is left holds together for a second or so: seconds are counted, not samples.
-
     :param problem: the data.
     :param fits: states with different causes.
     :return: the best of them; None where there is none.
     """
     states = [fit for fit in fits if fit is not None]
-    if not states:
-        return None
-    seconds = 1.0 + float(problem.clusters(CLUSTER).max(initial=0))
-
-    def criterion(fit: Fit) -> float:
-        parameters = sum(map(len, fit.model.z))
-        return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
-
-    return min(states, key=criterion)
+    return min(states, key=lambda fit: criterion(problem, fit), default=None)
 
 
 def _farthest(problem: Problem, moved: FloatArray) -> float:

@@ -1,0 +1,47 @@
+"""Parameters have to pay for themselves, and simplicity has its price."""
+
+from dataclasses import replace
+import math
+
+import pytest
+
+from tendon_ros.diagnose import challenge
+from tendon_ros.diagnose.challenge import Challenge
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.parsimony import criterion
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.screening import Screen
+
+COULOMB = Candidate('coulomb_friction', 'pulley_3')
+STRIBECK = Candidate('stribeck_friction', 'pulley_3')
+FALLING = {'static': 0.3, 'sliding': 0.05, 'speed': 0.3}
+
+
+@pytest.fixture(scope='module')
+def problem(bench, measured_on):
+    """Return the problem of a bench with friction that falls with speed."""
+    run = measured_on(bench, (STRIBECK.effect, STRIBECK.place, FALLING))
+    return prepared([run], bench).problem
+
+
+def test_a_parameter_pays_by_the_second(problem):
+    simple = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}), rounds=1)
+    rich = problem.fitted(problem.empty.joined(STRIBECK, FALLING), rounds=1)
+    seconds = 1 + problem.clusters(1.0).max()
+    even = simple.cost * math.exp(-2.0 * math.log(seconds) / seconds)
+    assert criterion(problem, replace(rich, cost=0.95 * even)) < criterion(problem, simple)
+    assert criterion(problem, replace(rich, cost=1.05 * even)) > criterion(problem, simple)
+
+
+def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(problem, monkeypatch):
+    # laws and machine so far apart that any two fits tie
+    monkeypatch.setattr(challenge, 'tie', lambda *_: 1e6)
+    steps = Steps(problem, [COULOMB, STRIBECK], 1, lambda *_: None)
+    start = problem.fitted(problem.empty)
+    found = Found(proposals=best_of(steps.screened(Screen(problem, start))))
+    found.states += [start, problem.fitted(problem.empty.joined(STRIBECK, FALLING))]
+    Challenge(steps).of(found)
+    assert COULOMB in [rival.candidate for rival in found.rivals[0]]
+    assert found.final.model.causes == (STRIBECK,)
