@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from bench.development import development
-from bench.development import seed as development_seed
+from bench.development import development, development_seed
 from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import PATTERN, STRATA
 from tendon_ros.diagnose.judge import Signs

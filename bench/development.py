@@ -8,7 +8,7 @@ from tendon_ros.blind.case import Case, made, Settings
 from tendon_ros.blind.store import PUBLISHED
 
 
-def seed(text: str) -> int:
+def development_seed(text: str) -> int:
     """Return a development seed that a user gave; for ``argparse``."""
     number = int(text)
     if not 0 <= number < PUBLISHED:

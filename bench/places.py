@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import argparse
 
-from bench.development import development
-from bench.development import seed as development_seed
+from bench.development import development, development_seed
 from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import Case
 from tendon_ros.diagnose.intake import admitted

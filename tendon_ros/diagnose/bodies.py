@@ -6,19 +6,30 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument import Instrument
 
 
-def bodies(instrument: Instrument) -> dict[str, str]:
+def turned(instrument: Instrument) -> dict[str, str]:
     """
-    Return the pulley that each place belongs to.
+    Return the pulley that each motor turns, both as places.
 
     :param instrument: the file.
-    :return: pulley by place, for the places that belong to one.
+    :return: pulley by motor.
     """
-    turned = {motor.name: motor.pulley for motor in instrument.motors}
-    found = {f'pulley_{pulley.name}': pulley.name for pulley in instrument.pulleys}
-    found |= {f'motor_{motor}': pulley for motor, pulley in turned.items()}
-    read = {sensor.name: turned.get(sensor.of, sensor.of) for sensor in instrument.sensors}
-    known = set(found.values())
-    return found | {name: of for name, of in read.items() if of in known}
+    return {f'motor_{motor.name}': f'pulley_{motor.pulley}' for motor in instrument.motors}
+
+
+def bodies(instrument: Instrument) -> dict[str, str]:
+    """
+    Return the pulley that each motor and each sensor of either belongs to.
+
+    :param instrument: the file.
+    :return: pulley by place; all others stand for themselves.
+    """
+    motors = turned(instrument)
+    read = {
+        s.name: motors[f'motor_{s.of}'] if s.kind == 'motor_torque' else f'pulley_{s.of}'
+        for s in instrument.sensors
+        if not s.kind.startswith('contact')
+    }
+    return motors | read
 
 
 def of_one_body(instrument: Instrument, one: Candidate, other: Candidate) -> bool:

@@ -15,6 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.bodies import turned
 from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.intervals import CLUSTER
@@ -127,8 +128,7 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
     gone = set(causes) - set(without.model.causes)
     event = any(cause.instants for cause in gone)
     # a motor and the pulley that it turns are one place
-    motors = problem.rollouts.instrument.motors
-    body = {f'motor_{motor.name}': f'pulley_{motor.pulley}' for motor in motors}
+    body = turned(problem.rollouts.instrument)
     places = {body.get(cause.place, cause.place) for cause in gone}
     kept = [
         power

@@ -71,10 +71,10 @@ class Places:
         readings: dict[str, FloatArray] = {}
         for segment, channel, span in problem.spans():
             sensor = problem.rollouts.segments[segment].measured[channel].sensor
-            errs = [sensor.name]
+            places = [sensor.name]
             if sensor.kind == 'motor_torque':  # the motor itself may give another torque
-                errs.insert(0, f'motor_{sensor.of}')
-            for place in errs:
+                places.insert(0, f'motor_{sensor.of}')
+            for place in places:
                 readings.setdefault(place, np.zeros_like(self._left))[span] = 1.0
         return [*found, *readings.items()]
 
