@@ -33,13 +33,14 @@ class Challenge:
     Challenges causes; those that stood clearly are not asked again.
 
     :param steps: of the search.
+    :param seen: signatures beside an earlier state, which tell whom to look at more closely.
     """
 
-    def __init__(self, steps: Steps) -> None:
+    def __init__(self, steps: Steps, seen: Seen) -> None:
         self._steps = steps
         self._problem = steps.problem
         self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
-        self._seen: Seen = {}
+        self._seen = seen
 
     def of(self, found: Found) -> None:
         """
@@ -47,7 +48,6 @@ class Challenge:
 
         :param found: its last state, rivals and states without a cause are replaced.
         """
-        self._seen = {}
         self._merge(found)
         changed = bool(self._stood)
         replaced = 0
@@ -67,7 +67,6 @@ class Challenge:
             replaced += 1
             changed = True
             found.states[-1] = self._steps.pruned(found.start, better)
-            self._seen = {}
             # who stood only just did so beside the one that has gone
             stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
         changed |= self._converged(found)

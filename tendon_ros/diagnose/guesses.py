@@ -36,15 +36,26 @@ def astray(problem: Problem, start: Fit, grown: Fit | None) -> bool:
     :param grown: with the first causes, where there are any.
     :return: whether to look from the file's own numbers, too.
     """
-    if _farthest(problem, start.model.moved) > ASTRAY:
+    if far_off(problem, start):
         return True
-    known = ~_guessed(problem)
-    if not np.abs(start.model.moved)[known].max(initial=0.0) > PRESSED:
+    if not _pressed(problem, start):
         return False
-    # one cause that leaves nothing is right wherever it was found
-    if grown is None or len(grown.model.causes) > 1:
+    if grown is None or open_question(problem, grown):
         return True
-    return open_question(problem, grown)
+    # one cause that leaves nothing is right wherever it was found, and so are several beside which
+    # the numbers are where the file has them
+    return len(grown.model.causes) > 1 and _pressed(problem, grown)
+
+
+def far_off(problem: Problem, state: Fit) -> bool:
+    """
+    Return whether guesses of the file have moved far.
+
+    :param problem: the data.
+    :param state: where to.
+    :return: whether any has moved by more than half its deviation.
+    """
+    return _farthest(problem, state.model.moved) > ASTRAY
 
 
 def under_way(problem: Problem, state: Fit, best: Fit, others: Sequence[Fit]) -> list[Fit]:
@@ -75,6 +86,12 @@ def better(problem: Problem, *fits: Fit | None) -> Fit | None:
     """
     states = [fit for fit in fits if fit is not None]
     return min(states, key=lambda fit: criterion(problem, fit), default=None)
+
+
+def _pressed(problem: Problem, state: Fit) -> bool:
+    """Return whether a number of the file that is no guess has moved far."""
+    known = np.abs(state.model.moved)[~_guessed(problem)]
+    return float(known.max(initial=0.0)) > PRESSED
 
 
 def _farthest(problem: Problem, moved: FloatArray) -> float:

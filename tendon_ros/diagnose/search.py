@@ -15,7 +15,7 @@ import numpy as np
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.guesses import astray, better, under_way
+from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
@@ -35,6 +35,7 @@ from tendon_ros.identify.subset import Member, Subsets
 
 #: causes; and from how many on each has to explain most of some channel, or the search goes astray
 MOST, MANY = 8, 5
+AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
 TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
@@ -66,9 +67,13 @@ class Search:
     ) -> None:
         self.problem = problem
         self._steps = Steps(problem, candidates, jobs, report)
-        self._challenge = Challenge(self._steps)
+        # a first look from where nothing is known tells later whom to look at more closely
+        self._seen: Seen = {}
+        self._challenge = Challenge(self._steps, self._seen)
         self._memory = memory
         self._begun = begun
+        # the last state that one cause was looked for beside, among whom, and what was found
+        self._tried: tuple[Fit, Sequence[Proposal], Fit | None] | None = None
 
     def run(self) -> Found:
         """
@@ -81,9 +86,7 @@ class Search:
         state = self._steps.started()
         found.states.append(state)
         self._steps.report('screening the candidates', 0.03)
-        # a first look from here tells later whom to look at more closely
-        seen: Seen = {}
-        screen = Screen(self.problem, state, seen)
+        screen = Screen(self.problem, state, self._seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
         # what leaves no trace at a typical size is not asked again, but where others may make one
@@ -110,7 +113,7 @@ class Search:
             ):
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:
-                    screen = Screen(self.problem, state, seen)
+                    screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
                 grown = self._grown(found, state, screen, proposals)
                 if turn == 0 and astray(self.problem, found.start, grown):
@@ -155,7 +158,9 @@ class Search:
     def _from_the_file(self, found: Found) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
         file = self.problem.fitted(self.problem.empty, rounds=0)
-        screen = Screen(self.problem, file)
+        # where nothing has moved far, signatures are what they are beside the tolerances fitted
+        seen = None if far_off(self.problem, found.start) else self._seen
+        screen = Screen(self.problem, file, seen)
         proposals = self._steps.screened(screen)
         grown = self._grown(found, found.start, screen, proposals)
         # what is there or not shows only once the guesses have followed
@@ -167,15 +172,17 @@ class Search:
 
     def _alone(self, state: Fit, proposals: Sequence[Proposal]) -> Fit | None:
         """Return the state with the one cause more that fits best; None without proposals."""
-        if not proposals:
-            return None
-        rivals = self._steps.fitted(state, best_of(proposals), 0.0)
-        if not rivals:
-            return None
-        best, *others = (r.fit for r in rivals)
-        fits = [best, *under_way(self.problem, state, best, others)]
-        settled = [self._steps.settled(fit.model) for fit in fits]
-        return min(settled, key=lambda fit: fit.cost)
+        if self._tried and self._tried[0] is state and self._tried[1] is proposals:
+            return self._tried[2]
+        rivals = self._steps.fitted(state, best_of(proposals), 0.0) if proposals else []
+        found: Fit | None = None
+        if rivals:
+            best, *others = (r.fit for r in rivals)
+            fits = [best, *under_way(self.problem, state, best, others)]
+            settled = [self._steps.settled(fit.model) for fit in fits]
+            found = min(settled, key=lambda fit: fit.cost)
+        self._tried = state, proposals, found
+        return found
 
     def _grown(
         self, found: Found, before: Fit, screen: Screen, proposals: Sequence[Proposal]
@@ -187,7 +194,7 @@ class Search:
         room = MOST - len(state.model.causes)
         if room <= 0:
             return None
-        members = self._subset(screen, proposals, room)
+        members = self._subset(screen, proposals, min(room, AT_ONCE))
         if not members:
             # numbers within tolerance that hide one beyond it cost more than what they leave
             alone = self._alone(state, _promising(state, proposals))

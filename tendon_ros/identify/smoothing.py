@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
+from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 FloatArray = NDArray[np.float64]
@@ -65,7 +65,7 @@ def smoothed(value: FloatArray, known: BoolArray, error: float, count: float) ->
     weight = known.astype(np.float64)
     filled = np.interp(np.arange(len(value)), np.flatnonzero(known), value[known])
     if error <= 0.0:
-        bridged = _penalised(filled, filled, weight, np.full(len(value), 1e-3))
+        bridged = _Least(weight, np.full(len(value), 1e-3)).near(filled, filled)
         return np.where(known, value, bridged)
     travel = maximum_filter1d(filled, _RESTS) - minimum_filter1d(filled, _RESTS)
     rests: BoolArray = travel < 1.25 * count
@@ -87,7 +87,7 @@ def _of_motion(value: FloatArray, weight: FloatArray, moving: BoolArray, error: 
     while low <= high and moving.any():
         middle = (low + high) // 2
         penalty = _penalty(np.full(len(value), middle))
-        left = (_penalised(value, value, weight, penalty) - value)[moving]
+        left = (_Least(weight, penalty).near(value, value) - value)[moving]
         # what starts suddenly is dealt with where it does
         near = np.minimum(np.abs(left), _FARTHEST * error)
         if np.sqrt(np.mean(near**2)) <= _USUAL * error:
@@ -106,13 +106,13 @@ def _resting(
     within: FloatArray,
 ) -> FloatArray:
     """Return the smoothed motion to which readings that are near enough are no constraint."""
-    penalty = _penalty(exponent)
-    found = _penalised(start, value, weight, penalty)
+    least = _Least(weight, _penalty(exponent))
+    found = least.near(start, value)
     for _ in range(_SETTLES if within.any() else 0):
         inside = np.clip(found, value - within, value + within)
         # half as far again as to the nearest edge: projections come to rest sooner
         nearest = np.where(within > 0.0, found + 1.5 * (inside - found), value)
-        found = _penalised(found, nearest, weight, penalty)
+        found = least.near(found, nearest)
     return found
 
 
@@ -122,23 +122,37 @@ def _penalty(exponent: NDArray[np.int64]) -> FloatArray:
     return 10.0 ** (0.5 * even - 2.0)
 
 
-def _penalised(
-    start: FloatArray, value: FloatArray, weight: FloatArray, penalty: FloatArray
-) -> FloatArray:
+class _Least:
     """
-    Minimise the weighted squares of what is left plus the penalty on third differences.
+    Minimises the weighted squares of what is left plus the penalty on third differences.
 
-    Solved for the way from a start, or angles far from zero would drown in rounding.
+    :param weight: of each sample.
+    :param penalty: of each sample's third difference.
     """
-    n = len(value)
-    own = penalty[1 : n - 2]
-    bands = np.zeros((4, n))
-    pull = weight * (value - start)
-    jerk = own * np.convolve(start, _JERK[::-1], mode='valid')
-    for a in range(4):
-        pull[a : n - 3 + a] -= _JERK[a] * jerk
-        for b in range(a, 4):
-            bands[3 - (b - a), b : n - 3 + b] += own * _JERK[a] * _JERK[b]
-    bands[3] += weight + 1e-12
-    step: FloatArray = solveh_banded(bands, pull)
-    return start + step
+
+    def __init__(self, weight: FloatArray, penalty: FloatArray) -> None:
+        n = len(weight)
+        self._weight = weight
+        self._own = penalty[1 : n - 2]
+        bands = np.zeros((4, n))
+        for a in range(4):
+            for b in range(a, 4):
+                bands[3 - (b - a), b : n - 3 + b] += self._own * _JERK[a] * _JERK[b]
+        bands[3] += weight + 1e-12
+        self._factor = cholesky_banded(bands, overwrite_ab=True, check_finite=False)
+
+    def near(self, start: FloatArray, value: FloatArray) -> FloatArray:
+        """
+        Return the motion near a value.
+
+        :param start: solved for is the way from there, or angles far from zero would drown in
+            rounding.
+        :param value: what to keep near.
+        :return: shape (n,).
+        """
+        pull = self._weight * (value - start)
+        jerk = self._own * np.convolve(start, _JERK[::-1], mode='valid')
+        for a in range(4):
+            pull[a : len(pull) - 3 + a] -= _JERK[a] * jerk
+        step: FloatArray = cho_solve_banded((self._factor, False), pull, check_finite=False)
+        return start + step

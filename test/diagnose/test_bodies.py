@@ -42,7 +42,7 @@ def test_two_effects_on_one_body_that_are_one_are_told_as_one(bench, measured_on
     three = three.joined(STRONGER, {'gain': 1.06}).joined(DAMPED, {'damping': 0.2})
     found = Found()
     found.states += [problem.fitted(problem.empty), problem.fitted(three)]
-    Challenge(Steps(problem, [COUNTS, WHEEL, STRONGER, DAMPED], 1, lambda *_: None)).of(found)
+    Challenge(Steps(problem, [COUNTS, WHEEL, STRONGER, DAMPED], 1, lambda *_: None), {}).of(found)
     assert set(found.final.model.causes) == {COUNTS, DAMPED}
     gain = found.final.model.values(found.final.model.causes.index(COUNTS))['gain']
     assert gain == pytest.approx(1.06, abs=0.01)

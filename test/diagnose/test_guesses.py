@@ -62,7 +62,7 @@ def test_a_last_state_is_fitted_to_its_end(problem):
     start = problem.fitted(problem.empty)
     rough = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}), rounds=1)
     found.states = [start, rough]
-    Challenge(Steps(problem, [COULOMB], 1, lambda *_: None)).of(found)
+    Challenge(Steps(problem, [COULOMB], 1, lambda *_: None), {}).of(found)
     end = problem.fitted(rough.model, rounds=60, accuracy=1e-5)
     assert found.final.cost < 0.99 * rough.cost
     assert found.final.cost < 1.01 * end.cost

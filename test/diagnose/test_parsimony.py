@@ -42,6 +42,6 @@ def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(problem, m
     start = problem.fitted(problem.empty)
     found = Found(proposals=best_of(steps.screened(Screen(problem, start))))
     found.states += [start, problem.fitted(problem.empty.joined(STRIBECK, FALLING))]
-    Challenge(steps).of(found)
+    Challenge(steps, {}).of(found)
     assert COULOMB in [rival.candidate for rival in found.rivals[0]]
     assert found.final.model.causes == (STRIBECK,)
