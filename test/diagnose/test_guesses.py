@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose.challenge import Challenge
@@ -36,6 +37,25 @@ def test_guesses_that_moved_may_have_done_without_the_causes(problem):
     assert astray(problem, start, None)
     still = problem.fitted(problem.empty, rounds=0)
     assert not astray(problem, still, still)
+
+
+def test_causes_beside_which_all_numbers_are_in_place_need_no_look_from_the_file(problem):
+    still = problem.fitted(problem.empty, rounds=0)
+    known = np.array([not t.guessed for t in problem.tolerances])
+    assert known.any()
+
+    def moved(fit, deviations):
+        return replace(fit, model=replace(fit.model, moved=np.where(known, deviations, 0.0)))
+
+    values = {'static': 0.05, 'sliding': 0.05, 'speed': 0.1}
+    two = problem.empty.joined(COULOMB, {'torque': 0.05}).joined(STRIBECK, values)
+    silent = replace(problem.fitted(two, rounds=0), left=np.zeros_like(still.left))
+    assert not astray(problem, moved(still, 1.0), None)
+    start = moved(still, 3.0)
+    assert not astray(problem, start, moved(silent, 1.0))
+    assert astray(problem, start, moved(silent, 3.0))
+    assert astray(problem, start, None)
+    assert astray(problem, start, replace(moved(silent, 1.0), left=still.left))
 
 
 def test_fits_are_followed_where_guesses_are_under_way(problem):
