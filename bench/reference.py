@@ -72,12 +72,12 @@ class Reference:
         if effect == 'coulomb_friction':
             return i, lambda speed, load: values['torque']
         if effect == 'stribeck_friction':
-            return (
-                i,
-                lambda speed, load: (
-                    values['sliding'] + values['static'] / (1.0 + (speed / values['speed']) ** 2)
-                ),
-            )
+
+            def falling(speed: float, load: float) -> float:
+                fall = 1.0 + (np.sqrt(2.0) - 1.0) * (speed / values['speed']) ** 2
+                return float(values['sliding'] + values['static'] / fall**2)
+
+            return i, falling
         raise ValueError(f'the reference has no {effect}')
 
     def _cable(self, x: FloatArray) -> FloatArray:
