@@ -40,6 +40,8 @@ class Challenge:
         self._steps = steps
         self._problem = steps.problem
         self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
+        # whom to ask when a cause that has stood is asked again, since another one was replaced
+        self._near: dict[Candidate, list[Candidate]] = {}
         self._seen = seen
 
     def of(self, found: Found) -> None:
@@ -49,6 +51,7 @@ class Challenge:
         :param found: its last state, rivals and states without a cause are replaced.
         """
         self._merge(found)
+        self._near = {}
         changed = bool(self._stood)
         replaced = 0
         stood = self._stood
@@ -61,10 +64,15 @@ class Challenge:
             without = self._without(found, state.model.causes.index(cause))
             rivals = self._challengers(found, cause, without)
             better = self._better(found, cause, rivals) if replaced < REPLACED else None
+            near = _near(state, without, rivals)
             if better is None:
                 stood[cause] = without, rivals
+                self._near[cause] = near
                 continue
             replaced += 1
+            # who takes its place has the same rivals, and it is one of everybody's
+            self._near |= dict.fromkeys(set(better.model.causes) - set(state.model.causes), near)
+            self._near = {c: [*others, cause] for c, others in self._near.items()}
             changed = True
             found.states[-1] = self._steps.pruned(found.start, better)
             # who stood only just did so beside the one that has gone
@@ -138,8 +146,10 @@ class Challenge:
     def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
         """Return the fits of other candidates in the place of a cause, best first."""
         proposals = found.proposals
-        if without is not found.start:
+        among = self._near.get(cause)
+        if among is None:
             among = self._likely(found, cause)
+        if without is not found.start:
             proposals = best_of(
                 self._steps.screened(Screen(self._problem, without, self._seen), [cause], among)
             )
@@ -150,7 +160,7 @@ class Challenge:
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
         begun = self._wider(found.final, cause, proposals)
         if not brief:
-            begun += self._elsewhere(found.final, cause)
+            begun += self._elsewhere(found.final, cause, among)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = self._sharpened(found, without, rivals)
         return [r for r in rivals if self._more_than_a_part(r)]
@@ -179,7 +189,9 @@ class Challenge:
             ],
         )
 
-    def _elsewhere(self, state: Fit, cause: Candidate) -> list[Rival]:
+    def _elsewhere(
+        self, state: Fit, cause: Candidate, among: Sequence[Candidate] | None
+    ) -> list[Rival]:
         """
         Return the fits of the same effect at other places, which begin from what the cause found.
 
@@ -188,7 +200,7 @@ class Challenge:
         values = state.model.values(state.model.causes.index(cause))
         others = [
             c
-            for c in self._steps.candidates
+            for c in (self._steps.candidates if among is None else among)
             if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
         ]
         return self._instead(state, cause, [(c, values) for c in others])
@@ -277,3 +289,9 @@ class Challenge:
                 if wins(rival.candidate, trial):
                     return trial
         return None
+
+
+def _near(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate]:
+    """Return the rivals that make up for more than half of a cause."""
+    half = 0.5 * (state.cost + without.cost)
+    return [r.candidate for r in rivals if r.fit.cost < half]
