@@ -72,7 +72,9 @@ class Challenge:
             replaced += 1
             # who takes its place has the same rivals, and it is one of everybody's
             self._near |= dict.fromkeys(set(better.model.causes) - set(state.model.causes), near)
-            self._near = {c: [*others, cause] for c, others in self._near.items()}
+            self._near = {
+                c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()
+            }
             changed = True
             found.states[-1] = self._steps.pruned(found.start, better)
             # who stood only just did so beside the one that has gone

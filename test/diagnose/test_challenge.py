@@ -1,0 +1,44 @@
+"""Who has stood meets again only the rivals that came near, and those that were replaced."""
+
+from tendon_ros.diagnose.challenge import Challenge
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.identify.candidate import Candidate
+
+COULOMB = Candidate('coulomb_friction', 'pulley_3')
+WRONG = Candidate('viscous_friction', 'pulley_3')
+DAMPED = Candidate('viscous_friction', 'pulley_L')
+FAR = Candidate('torque_bias', 'motor_M')
+
+
+class Asked(Steps):
+    """Steps that note whom they are asked to screen."""
+
+    def __init__(self, problem, candidates):
+        super().__init__(problem, candidates, 1, lambda *_: None)
+        self.among = []
+
+    def screened(self, screen, leave=(), among=None):
+        self.among.append((leave, among))
+        return super().screened(screen, leave, among)
+
+
+def test_who_takes_a_place_meets_who_had_it_and_not_everybody(bench, measured_on):
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.05}),
+        ('viscous_friction', 'pulley_L', {'damping': 0.6}),
+    )
+    problem = prepared([run], bench).problem
+    begun = problem.empty.joined(DAMPED, {'damping': 0.6}).joined(WRONG, {'damping': 0.1})
+    found = Found()
+    found.states += [problem.fitted(problem.empty), problem.fitted(begun)]
+    steps = Asked(problem, [COULOMB, WRONG, DAMPED, FAR])
+    Challenge(steps, {}).of(found)
+    assert set(found.final.model.causes) == {COULOMB, DAMPED}
+    asked = [among for leave, among in steps.among if leave == [WRONG]]
+    assert asked == [None]  # everybody, the first time
+    [again] = [among for leave, among in steps.among if leave == [COULOMB]]
+    assert WRONG in again
+    assert FAR not in again
