@@ -194,7 +194,9 @@ class Search:
         room = MOST - len(state.model.causes)
         if room <= 0:
             return None
-        members = self._subset(screen, proposals, min(room, AT_ONCE))
+        # guesses that have gone far to do without causes come back for all of them together
+        most = room if far_off(self.problem, found.start) else min(room, AT_ONCE)
+        members = self._subset(screen, proposals, most)
         if not members:
             # numbers within tolerance that hide one beyond it cost more than what they leave
             alone = self._alone(state, _promising(state, proposals))
