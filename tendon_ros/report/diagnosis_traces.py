@@ -13,7 +13,8 @@ from tendon_ros.report.diagnosis_words import channel_words, scale
 from tendon_ros.report.themes import Theme, themed
 
 _SIZE = (4.6, 6.6)  # [in], as wide as a phone's screen
-_HEIGHTS = (2.0, 1.5, 2.0)
+#: left, bottom, width, height; fixed, since to lay a figure out takes longer than to draw it
+_PLACES = ((0.17, 0.655, 0.80, 0.250), (0.17, 0.425, 0.80, 0.175), (0.17, 0.073, 0.80, 0.245))
 _CLOSER = 0.1  # part of the duration that the closer look shows
 
 
@@ -57,8 +58,8 @@ def trace_figure(theme: Theme, trace: Trace, floor: float | None) -> Figure:
     :param floor: the channel's noise floor in the trace's unit, where it is known.
     :return: the figure.
     """
-    figure = Figure(figsize=_SIZE, layout='constrained')
-    whole, rest, closer = figure.subplots(3, 1, height_ratios=_HEIGHTS)
+    figure = Figure(figsize=_SIZE)
+    whole, rest, closer = (figure.add_axes(place) for place in _PLACES)
     rest.sharex(whole)
     time = trace.time - trace.time[0]
     factor, unit = scale(trace.unit, float(np.nanmax(np.abs(trace.measured))))
@@ -71,7 +72,7 @@ def trace_figure(theme: Theme, trace: Trace, floor: float | None) -> Figure:
     figure.legend(
         handles,
         labels,
-        loc='outside upper left',
+        loc='upper left',
         ncols=3,
         frameon=False,
         handlelength=1.1,
@@ -102,7 +103,8 @@ def trace_figure(theme: Theme, trace: Trace, floor: float | None) -> Figure:
     closer.set_ylim(low - margin, high + margin)
     closer.set_title('Closer, where the gap is worst')
     closer.set_xlabel('time [s]')
-    figure.align_ylabels()
+    for axes in (whole, rest, closer):
+        axes.yaxis.set_label_coords(-0.155, 0.5)
     return figure
 
 
