@@ -33,8 +33,8 @@ ENOUGH = 0.1
 #: form of a law from which on another effect of its kind may only give it another form: creep with
 #: one time constant more, hysteresis with one more bend
 COARSE = 0.1
-#: times the form of other laws that an event must explain, for it fits whatever they once get
-#: wrong; or the part of what is left
+#: times the form of other laws that an event must explain, besides half of what is left, for it
+#: fits whatever they once get wrong; or the part of what is left
 TIMES_EVENT, TAKES_EVENT = 10.0, 0.8
 
 
@@ -57,8 +57,9 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         return False
     profile = form_profile(problem, start, before)
     form = own_power(problem, start) + float(np.mean(profile))
-    if eager:  # what laws get wrong is not at one time
-        return gain > TIMES_EVENT * form or gain > TAKES_EVENT * problem.structured(before.left)
+    if eager:  # what laws get wrong is not at one time, and nor is what has no law
+        part = gain / max(problem.structured(before.left), 1e-12)
+        return part > TAKES_EVENT or (part > HALF and gain > TIMES_EVENT * form)
     if gain > form:
         return True
     # what the form of a law leaves has no other cause that would explain most of it
