@@ -107,18 +107,18 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
         if not isinstance(node, ast.FunctionDef):
             lines.append(ast.unparse(node))
             continue
+        if compiled and node.name in ENTRIES:
+            entries.append(node)
+            continue
         lines.append('')
         if compiled:
-            if node.name in ENTRIES:
-                entries.append(_entry(node))
-                node.name += '_inside'
             inline = node.name in INSIDE_CALLERS or node.name.endswith('_law')
             more = ', forceinline=True' if inline else ''
             options = f'no_cpython_wrapper=True{more}, {OPTIONS}'
             lines.append(f'@njit(({_types(node, TYPES)}), {options})')
         _strip(node)
         lines.append(ast.unparse(node))
-    return '\n'.join(lines + entries) + '\n'
+    return '\n'.join(lines) + (_entered(entries) if entries else '') + '\n'
 
 
 def decorated_source(files: Sequence[Path], *, compiled: bool) -> str:
@@ -145,19 +145,37 @@ def decorated_source(files: Sequence[Path], *, compiled: bool) -> str:
     return '\n'.join(lines) + '\n'
 
 
-def _entry(function: ast.FunctionDef) -> str:
-    """Return a function that takes arrays and hands their first elements to the one inside."""
-    names = [argument.arg for argument in function.args.args]
-    hand = {'Floats': 'floats({})', 'Ints': 'ints({})'}
-    handed = [
-        hand.get(ast.unparse(argument.annotation or _FLOAT), '{}').format(argument.arg)
-        for argument in function.args.args
-    ]
-    return (
-        f'\n@njit(({_types(function, ENTRY_TYPES)}), {OPTIONS})\n'
-        f'def {function.name}({", ".join(names)}):\n'
-        f'    return {function.name}_inside({", ".join(handed)})'
-    )
+def _entered(entries: Sequence[ast.FunctionDef]) -> str:
+    """
+    Return a compiled function with the bodies of all entries, and one by each one's name.
+
+    A function is optimised with all that it calls, so that one function takes much less time to
+    compile than one for each entry. Arrays come in; inside they are bare pointers.
+    """
+    kinds = {
+        argument.arg: ast.unparse(argument.annotation or _FLOAT)
+        for entry in entries
+        for argument in entry.args.args
+    }
+    hand = {'Floats': 'floats', 'Ints': 'ints'}
+    taken = [f'{name}_array' if kind in hand else name for name, kind in kinds.items()]
+    types = ', '.join(ENTRY_TYPES[kind] for kind in kinds.values())
+    lines = [f'\n\n@njit((int64, {types}), {OPTIONS})', f'def entered(entry, {", ".join(taken)}):']
+    lines += [f'    {n} = {hand[kind]}({n}_array)' for n, kind in kinds.items() if kind in hand]
+    wrappers = []
+    for number, entry in enumerate(entries):
+        own = [argument.arg for argument in entry.args.args]
+        _strip(entry)
+        body = '\n'.join(ast.unparse(statement) for statement in entry.body)
+        lines += [f'    if entry == {number}:', textwrap.indent(body, 8 * ' ')]
+        # what an entry does not take, it gets any of the same kind
+        spare = {kind: next((n for n in own if kinds[n] == kind), '0') for kind in ENTRY_TYPES}
+        given = [name if name in own else spare[kind] for name, kind in kinds.items()]
+        wrappers += [
+            f'\ndef {entry.name}({", ".join(own)}):',
+            f'    return entered({number}, {", ".join(given)})',
+        ]
+    return '\n'.join([*lines, '    return 0', *wrappers])
 
 
 def _definitions() -> Iterator[ast.stmt]:
