@@ -4,9 +4,14 @@ Causes that undo each other: together they imitate something that is none of the
 What unrelated causes do to the channels adds up like squares. Where a fit lacks the true cause, it
 makes one up from large effects of opposite sign whose small difference looks like it; each is then
 missed badly when it alone is left out, and none of them is there.
+
+A sensor of another gain, for one, is imitated by all that pushes and all other sensors having that
+gain: in every other channel nothing is left of several large effects.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +20,16 @@ from scipy.sparse.csgraph import connected_components
 from tendon_ros.diagnose.form import change
 from tendon_ros.identify.fit import Fit, Problem
 
+FloatArray = NDArray[np.float64]
+
 #: cosine of what two causes do below which they are opposed
 OPPOSED = -0.5
 #: times the power of what they do together that opposed causes do each alone, all added up
 UNDONE = 3.0
+#: the same in one channel, where something else may show in others
+HUSHED = 20.0
+#: causes from which on it is no chance that nothing is left of them in a channel
+CONSPIRING = 3
 
 
 def undoing(problem: Problem, state: Fit) -> frozenset[int]:
@@ -33,24 +44,54 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
     if count < 2:
         return frozenset()
     changes = np.array([change(problem, state, k) for k in range(count)])
-    return undone(np.where(np.isfinite(changes), changes, 0.0))
+    changes = np.where(np.isfinite(changes), changes, 0.0)
+    segments = problem.rollouts.segments
+    shares: dict[str, list[FloatArray]] = {}
+    for n, c, span in problem.spans():
+        shares.setdefault(segments[n].measured[c].sensor.channel, []).append(changes[:, span])
+    channels = [np.concatenate(parts, axis=1) for parts in shares.values()]
+    return undone(changes) | conspiring(channels)
 
 
-def undone(changes: NDArray[np.float64]) -> frozenset[int]:
+def undone(changes: FloatArray, most: float = UNDONE) -> frozenset[int]:
     """
     Return which of several changes mostly undo each other.
 
     :param changes: what each cause does to each sample, shape (causes, samples).
+    :param most: times the power of what stays that they have.
     :return: the rows of changes that are opposed to others of them, where little of them stays.
     """
+    return frozenset().union(*_undone(changes, most))
+
+
+def conspiring(channels: Sequence[FloatArray]) -> frozenset[int]:
+    """
+    Return which of several causes are large and yet leave nothing in the channels that they share.
+
+    :param channels: of each channel what each cause does to its samples, in noise deviations,
+        shape (causes, samples).
+    :return: three causes or more that one channel or another ties together.
+    """
+    count = len(channels[0]) if channels else 0
+    tied = np.eye(count, dtype=np.bool_)
+    for changes in channels:
+        heard = np.mean(changes**2, axis=1) > 1.0
+        for members in _undone(changes * heard[:, None], HUSHED):
+            tied[np.ix_(list(members), list(members))] = True
+    _, label = connected_components(tied, directed=False)
+    return frozenset(k for k in range(count) if np.sum(label == label[k]) >= CONSPIRING)
+
+
+def _undone(changes: FloatArray, most: float) -> list[frozenset[int]]:
+    """Return the groups of rows that are opposed and of which little stays."""
     product = changes @ changes.T
     power = np.diag(product)
     size = np.sqrt(np.maximum(power, 1e-300))
     opposed = product / np.outer(size, size) < OPPOSED
     _, label = connected_components(opposed, directed=False)
-    found: set[int] = set()
-    for one in np.unique(label):
-        members = np.flatnonzero(label == one)
-        if power[members].sum() > UNDONE * product[np.ix_(members, members)].sum():
-            found.update(members.tolist())
-    return frozenset(found)
+    groups = [np.flatnonzero(label == one) for one in np.unique(label)]
+    return [
+        frozenset(members.tolist())
+        for members in groups
+        if power[members].sum() > most * product[np.ix_(members, members)].sum()
+    ]

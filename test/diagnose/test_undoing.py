@@ -10,7 +10,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.undoing import undoing, undone
+from tendon_ros.diagnose.undoing import conspiring, undoing, undone
 from tendon_ros.identify.candidate import Candidate
 
 WAVE = np.sin(np.linspace(0.0, 20.0, 400))
@@ -35,6 +35,33 @@ OTHER = np.cos(np.linspace(0.0, 31.0, 400))
 )
 def test_little_stays_of_what_is_undone(changes, rows):
     assert undone(np.array(changes)) == set(rows)
+
+
+@pytest.mark.parametrize(
+    ('channels', 'rows'),
+    [
+        # a cell whose gain is imitated by all that pushes it and by the gain of the motor
+        (
+            [[9 * WAVE, 9 * OTHER, -9 * WAVE - 9 * OTHER], [9 * WAVE, 9 * OTHER, 0 * WAVE]],
+            (0, 1, 2),
+        ),
+        # tied by one channel after the other
+        (
+            [
+                [9 * WAVE, -9 * WAVE, 0 * WAVE, 40 * OTHER],
+                [0 * WAVE, 9 * OTHER, -9 * OTHER, 0 * WAVE],
+            ],
+            (0, 1, 2),
+        ),
+        # two may meet by chance, and so may what noise hides
+        ([[9 * WAVE, -9 * WAVE, 9 * OTHER]], ()),
+        ([[0.3 * WAVE, 0.3 * OTHER, -0.3 * WAVE - 0.3 * OTHER]], ()),
+        ([[9 * WAVE, 9 * OTHER, -6 * WAVE - 6 * OTHER]], ()),
+        ([], ()),
+    ],
+)
+def test_nothing_is_left_of_those_that_conspire(channels, rows):
+    assert conspiring([np.array(changes) for changes in channels]) == set(rows)
 
 
 @pytest.fixture(scope='module')
