@@ -130,10 +130,8 @@ def test_a_gap_grows_and_is_small_again_without_flicker(rig, changing):
     ('effect', 'place', 'parameters'),
     [
         ('tension_friction', 'pulley_3', {'coefficient': 0.12}),
-        ('coulomb_friction', 'pulley_1', {'torque': 0.03}),
         ('pretension', 'cable_L3', {'scale': 0.8}),
         ('torque_gain', 'motor_M', {'gain': 1.1}),
-        ('load_cell_gain', 'load_cell', {'gain': 1.1}),
         ('encoder_gain', 'encoder_2', {'gain': 1.03}),
     ],
 )
