@@ -58,7 +58,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     profile = form_profile(problem, start, before)
     form = own_power(problem, start) + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time, and nor is what has no law
-        part = gain / max(problem.structured(before.left), 1e-12)
+        part = _part_where_it_happens(problem, before, after, new)
         return part > TAKES_EVENT or (part > HALF and gain > TIMES_EVENT * form)
     if gain > form:
         return True
@@ -69,6 +69,19 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         or _apart(before, after, profile)
     )
     return most and not _bends(problem, after, new)
+
+
+def _part_where_it_happens(
+    problem: Problem, before: Fit, after: Fit, new: Set[Candidate]
+) -> float:
+    """Return the part of what is left that events explain, in the recordings that have them."""
+    segments = problem.rollouts.segments
+    there = np.zeros(len(before.left), dtype=np.bool_)
+    for n, _, span in problem.spans():
+        there[span] = any(c.acts_in(segments[n].name) for c in new)
+    then, last = (np.where(there, fit.left, 0.0) for fit in (before, after))
+    left = len(then) * problem.structured(then)
+    return float(then @ then - last @ last) / max(left, 1e-12)
 
 
 def _completes(before: Fit, new: Set[Candidate]) -> bool:

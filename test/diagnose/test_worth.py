@@ -148,3 +148,44 @@ def test_inner_friction_sticks_where_the_rig_rests(measured_on):
     )
     assert np.mean(sticks[segment == 0]) > 0.3
     assert np.mean(sticks[segment == 1]) < 0.1
+
+
+@pytest.mark.parametrize(
+    ('recordings', 'only', 'worth_it'),
+    [
+        (('free', 'again'), 'again', True),
+        # of four pushes it explains one, and where it is said to act in all runs a quarter
+        (('free', 'again', 'third', 'last'), '', False),
+        (('free', 'again', 'third', 'last'), 'again', True),
+    ],
+)
+def test_an_event_explains_half_of_what_is_left_where_it_happens(
+    body, measured_on, recordings, only, worth_it
+):
+    push = {'torque': 0.3, 'start': 2.0, 'duration': 0.5}
+    runs = [
+        measured_on(body, ('disturbance', 'pulley_body', {**push, 'start': at}), name=name)
+        for at, name in zip((4.0, 2.0, 1.0, 3.0), recordings, strict=False)
+    ]
+    problem = prepared(runs, body).problem
+    before = problem.fitted(problem.empty)
+    event = Candidate('disturbance', 'pulley_body', only=only)
+    after = problem.fitted(problem.empty.joined(event, push), rounds=4)
+    assert worthwhile(problem, before, before, after) == worth_it
+
+
+def test_what_is_left_all_the_time_is_not_explained_by_an_event(body, measured_on):
+    run = measured_on(body, ('joint_spring', 'pulley_body', {'stiffness': 0.5, 'rest': 0.0}))
+    problem = prepared([run], body).problem
+    before = problem.fitted(problem.empty)
+    event = Candidate('disturbance', 'pulley_body')
+    fits = [
+        problem.fitted(
+            problem.empty.joined(event, {'torque': 0.05, 'start': at, 'duration': 0.4}), rounds=8
+        )
+        for at in (1.0, 2.0, 3.0, 4.0)
+    ]
+    best = min(fits, key=lambda fit: fit.cost)
+    gain, _ = gains(problem, before, best)
+    assert gain > 1.0
+    assert not worthwhile(problem, before, before, best)
