@@ -20,7 +20,7 @@ from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.worth import gains, TIMES_EVENT
+from tendon_ros.diagnose.worth import gains, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -190,8 +190,9 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     :return: 0 to 1.
     """
     likely = probability(signs)
-    # of all times, one fits what a law gets wrong
-    luck = signs.event and signs.most < TIMES_EVENT * signs.form
+    # of all times, one fits what a law gets wrong; but then the law is wrong at other times, too
+    alone = signs.worth > TAKES_EVENT * (signs.worth + signs.left)
+    luck = signs.event and signs.most < TIMES_EVENT * signs.form and not alone
     # and what a law gets wrong may be told by something else at its place
     drowned = signs.most < signs.beside
     happened = bool(found.final.model.causes[k].instants)
