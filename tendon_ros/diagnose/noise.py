@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import comb, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,6 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 COUNTED = 1.0  # [s] over which what counts make of a channel is much the same
-BENDS = (2, 4)  # orders of the differences in which noise is heard
 STARTS = 0.3  # [s] in which a motion starts or stops
 
 
@@ -122,25 +120,13 @@ def heard(measured: Measured, left: FloatArray, period: float) -> float:
     :return: one deviation, in its unit.
     """
     apart = neighbours(period)
-    # what a wrong model leaves of a motion is nearly straight for so long, or nearly a cubic; the
-    # second passes over fewer reversals
-    found = min(
-        (b for order in BENDS if (b := _bend(left, apart, order)) is not None), default=0.0
-    )
+    # second differences: what a wrong model leaves of a motion is nearly straight for so long
+    bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
+    bend = bend[np.isfinite(bend)]
+    found = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if bend.size else 0.0
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
     span = float(np.nanmax(np.abs(measured.value), initial=0.0))
     return max(found, measured.floor, 1e-6 * span + 1e-12)
-
-
-def _bend(left: FloatArray, apart: int, order: int) -> float | None:
-    """Return the deviation that noise has by its differences of an order; None without any."""
-    signs = [(-1) ** k * comb(order, k) for k in range(order + 1)]
-    count = len(left) - order * apart
-    if count <= 0:
-        return None
-    differences = sum(sign * left[k * apart :][:count] for k, sign in enumerate(signs))
-    known = np.abs(differences[np.isfinite(differences)])
-    return 1.4826 * float(np.median(known)) / sqrt(comb(2 * order, order)) if known.size else None
 
 
 def _counted(
