@@ -16,6 +16,7 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.parts import is_part, plain, widened
+from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
@@ -23,7 +24,6 @@ from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Proposal, Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
-MANY = 3  # causes from which on not every candidate challenges each of them
 REPLACED = 6  # causes at most that challenges replace
 CREEPING = 20  # rounds at most in which a fit comes to its end
 
@@ -63,8 +63,8 @@ class Challenge:
             state = found.final
             without = self._without(found, state.model.causes.index(cause))
             rivals = self._challengers(found, cause, without)
-            better = self._better(found, cause, rivals) if replaced < REPLACED else None
-            near = _near(state, without, rivals)
+            better = self._better(found, cause, without, rivals) if replaced < REPLACED else None
+            near = halfway(state, without, rivals)
             if better is None:
                 stood[cause] = without, rivals
                 self._near[cause] = near
@@ -148,9 +148,8 @@ class Challenge:
     def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
         """Return the fits of other candidates in the place of a cause, best first."""
         proposals = found.proposals
+        # who is asked again meets only who came near, else everybody: most first looks were taken
         among = self._near.get(cause)
-        if among is None:
-            among = self._likely(found, cause)
         if without is not found.start:
             proposals = best_of(
                 self._steps.screened(Screen(self._problem, without, self._seen), [cause], among)
@@ -237,25 +236,10 @@ class Challenge:
         others = [s for s in found.states if cause not in s.model.causes]
         return min(others, key=lambda s: s.cost)
 
-    def _likely(self, found: Found, cause: Candidate) -> list[Candidate] | None:
-        """Return who might replace one of many causes: kin, and what explained much at a time."""
-        if len(found.final.model.causes) < MANY:
-            return None
-        instrument = self._problem.rollouts.instrument
-        kin = [
-            c
-            for c in self._steps.candidates
-            if c.effect == cause.effect or of_one_body(instrument, c, cause)
-        ]
-        telling = [c for c in self._steps.candidates if (c.effect, c.place) in found.telling]
-        return list(dict.fromkeys([*kin, *telling]))
-
     def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
         """Fit the rivals that come near as carefully as the cause that they challenge."""
         state = found.final
-        near = state.cost + 0.05 * max(without.cost - state.cost, 0.0)
-        near += tie(self._problem, state) * len(state.left)
-        close = [r for r in rivals if r.fit.cost < near][:CLOSE]
+        close = close_ones(self._problem, state, without, rivals)[:CLOSE]
         equal = state.cost + tie(self._problem, state) * len(state.left)
 
         here = self._problem.slopes(state)
@@ -272,7 +256,9 @@ class Challenge:
         sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
         return sorted([*sharp, *(r for r in rivals if r not in close)], key=judged_cost)
 
-    def _better(self, found: Found, cause: Candidate, rivals: Sequence[Rival]) -> Fit | None:
+    def _better(
+        self, found: Found, cause: Candidate, without: Fit, rivals: Sequence[Rival]
+    ) -> Fit | None:
         """Return a fit with another candidate: one that fits better, or as well and is simpler."""
         state = found.final
 
@@ -290,10 +276,10 @@ class Challenge:
                 trial = self._steps.settled(rival.fit.model, self._problem.slopes(state))
                 if wins(rival.candidate, trial):
                     return trial
+        for rival in close_ones(self._problem, state, without, rivals)[:2]:
+            smaller = relieved(self._problem, rival.fit)
+            if smaller is not None and self._as_good(smaller, state):
+                trial = self._steps.settled(smaller.model, self._problem.slopes(smaller))
+                if self._as_good(trial, state):
+                    return trial
         return None
-
-
-def _near(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate]:
-    """Return the rivals that make up for more than half of a cause."""
-    half = 0.5 * (state.cost + without.cost)
-    return [r.candidate for r in rivals if r.fit.cost < half]

@@ -24,15 +24,13 @@ class Found:
 
     ``states``: the start, then one for each cause that joins, most telling first. ``rivals``,
     ``without``: for each cause of the last state, who was fitted in its place, and the fit
-    without it. ``proposals``: of the first screening, the best of each candidate. ``telling``:
-    effects and places that explained much at some time.
+    without it. ``proposals``: of the first screening, the best of each candidate.
     """
 
     states: list[Fit] = field(default_factory=list)
     rivals: list[list[Rival]] = field(default_factory=list)
     without: list[Fit] = field(default_factory=list)
     proposals: list[Proposal] = field(default_factory=list)
-    telling: set[tuple[str, str]] = field(default_factory=set)
 
     @property
     def start(self) -> Fit:

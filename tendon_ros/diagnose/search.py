@@ -37,7 +37,6 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST, MANY = 8, 5
 AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
-TELLING = 20  # candidates of each round that may replace one of many causes
 #: part of the cost that a challenge has to leave for another look where much is left
 GAINED = 0.8
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
@@ -189,8 +188,6 @@ class Search:
     ) -> Fit | None:
         """Return a state with the causes that explain most together; None where none does."""
         state = screen.fit
-        leading = best_of(proposals)[:TELLING]
-        found.telling |= {(p.candidate.effect, p.candidate.place) for p in leading}
         room = MOST - len(state.model.causes)
         if room <= 0:
             return None

@@ -1,0 +1,63 @@
+"""Rivals of a cause: which of them come near, and what may hold one of them back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+import numpy as np
+
+from tendon_ros.diagnose.form import tie
+from tendon_ros.diagnose.found import Rival
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.worths import worths
+
+#: part of what a cause explains that a rival which is close may leave
+LEAVES = 0.05
+
+
+def halfway(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate]:
+    """
+    Return the rivals that make up for more than half of a cause.
+
+    :param state: with the cause.
+    :param without: without it.
+    :param rivals: fits of others in its place.
+    :return: who they are, in the order of the rivals.
+    """
+    half = 0.5 * (state.cost + without.cost)
+    return [r.candidate for r in rivals if r.fit.cost < half]
+
+
+def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Rival]:
+    """
+    Return the rivals that make up for nearly all of a cause.
+
+    :param problem: the data.
+    :param state: with the cause.
+    :param without: without it.
+    :param rivals: fits of others in its place.
+    :return: those, in the order of the rivals.
+    """
+    near = state.cost + LEAVES * max(without.cost - state.cost, 0.0)
+    near += tie(problem, state) * len(state.left)
+    return [r for r in rivals if r.fit.cost < near]
+
+
+def relieved(problem: Problem, fit: Fit) -> Fit | None:
+    """
+    Return a rival's fit without what is worth least beside it.
+
+    That may have stood for the rival, and keeps it in a valley from which it does not get out.
+
+    :param problem: the data.
+    :param fit: of a rival, which is its last cause.
+    :return: the fit with one cause less; None where the rival is alone or the rest diverges.
+    """
+    others = worths(problem, fit)[:-1]
+    if not others:
+        return None
+    rest = fit.model.without(int(np.argmin(others)))
+    smaller = problem.fitted(rest, problem.slopes(fit), 8, 1e-3)
+    return smaller if math.isfinite(smaller.cost) else None

@@ -1,0 +1,42 @@
+"""Rivals that come near, and what held one of them back."""
+
+from dataclasses import replace
+
+from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
+from tendon_ros.identify.candidate import Candidate
+
+COULOMB = Candidate('coulomb_friction', 'pulley_3')
+DAMPED = Candidate('viscous_friction', 'pulley_L')
+FAR = Candidate('torque_bias', 'motor_M')
+
+
+def test_what_is_worth_least_beside_a_rival_is_left_out_for_it(bench, measured_on):
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.05}),
+        ('viscous_friction', 'pulley_L', {'damping': 0.6}),
+    )
+    problem = prepared([run], bench).problem
+    # a bias of which there is none, far from where it would be fitted to
+    stuck = problem.empty.joined(DAMPED, {'damping': 0.6}).joined(FAR, {'torque': 0.004})
+    rival = problem.fitted(stuck.joined(COULOMB, {'torque': 0.05}), rounds=1)
+    smaller = relieved(problem, rival)
+    assert smaller.model.causes == (DAMPED, COULOMB)
+    assert smaller.cost < 1.01 * rival.cost
+    alone = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}), rounds=1)
+    assert relieved(problem, alone) is None
+
+
+def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
+    problem = prepared([measured_on(bench)], bench).problem
+    fit = problem.fitted(problem.empty, rounds=0)
+    samples = float(len(fit.left))
+    state, without = (replace(fit, cost=part * samples) for part in (1.0, 11.0))
+    rivals = [
+        Rival(one, replace(fit, cost=part * samples))
+        for one, part in ((COULOMB, 1.4), (DAMPED, 5.0), (FAR, 7.0))
+    ]
+    assert halfway(state, without, rivals) == [COULOMB, DAMPED]
+    assert close_ones(problem, state, without, rivals) == rivals[:1]
