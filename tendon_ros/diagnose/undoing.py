@@ -45,23 +45,18 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
         return frozenset()
     changes = np.array([change(problem, state, k) for k in range(count)])
     changes = np.where(np.isfinite(changes), changes, 0.0)
-    segments = problem.rollouts.segments
-    shares: dict[str, list[FloatArray]] = {}
-    for n, c, span in problem.spans():
-        shares.setdefault(segments[n].measured[c].sensor.channel, []).append(changes[:, span])
-    channels = [np.concatenate(parts, axis=1) for parts in shares.values()]
-    return undone(changes) | conspiring(channels)
+    channels = problem.channels().values()
+    return undone(changes) | conspiring([changes[:, samples] for samples in channels])
 
 
-def undone(changes: FloatArray, most: float = UNDONE) -> frozenset[int]:
+def undone(changes: FloatArray) -> frozenset[int]:
     """
     Return which of several changes mostly undo each other.
 
     :param changes: what each cause does to each sample, shape (causes, samples).
-    :param most: times the power of what stays that they have.
     :return: the rows of changes that are opposed to others of them, where little of them stays.
     """
-    return frozenset().union(*_undone(changes, most))
+    return frozenset().union(*_undone(changes, UNDONE))
 
 
 def conspiring(channels: Sequence[FloatArray]) -> frozenset[int]:

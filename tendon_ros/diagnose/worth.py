@@ -144,13 +144,10 @@ def by_channel(problem: Problem, fit: Fit) -> dict[str, float]:
     :param fit: the fit.
     :return: mean squares in noise deviations, all recordings together.
     """
-    total: dict[str, list[float]] = {}
-    segments = problem.rollouts.segments
-    for n, c, left in problem.groups(fit.left):
-        entry = total.setdefault(segments[n].measured[c].sensor.channel, [0.0, 0.0])
-        entry[0] += float(left @ left)
-        entry[1] += len(left)
-    return {name: square / max(count, 1.0) for name, (square, count) in total.items()}
+    return {
+        name: float(np.sum(fit.left[samples] ** 2)) / max(int(samples.sum()), 1)
+        for name, samples in problem.channels().items()
+    }
 
 
 def open_question(problem: Problem, state: Fit) -> bool:

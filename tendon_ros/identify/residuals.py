@@ -174,6 +174,16 @@ class Residuals:
                 at += count
         return found
 
+    def channels(self) -> dict[str, NDArray[np.bool_]]:
+        """Return by channel which samples of a vector are its own, of all segments together."""
+        spans = self.spans()
+        count = spans[-1][2].stop if spans else 0
+        found: dict[str, NDArray[np.bool_]] = {}
+        for n, c, span in spans:
+            name = self._segments[n].measured[c].sensor.channel
+            found.setdefault(name, np.zeros(count, dtype=np.bool_))[span] = True
+        return found
+
     def structured(self, left: FloatArray) -> float:
         """
         Return the power of what is left that is not noise: what neighbouring bins share.

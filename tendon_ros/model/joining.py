@@ -8,7 +8,7 @@ with the constants of one network structure.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 import inspect
 from pathlib import Path
 import textwrap
@@ -115,7 +115,7 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
             inline = node.name in INSIDE_CALLERS or node.name.endswith('_law')
             more = ', forceinline=True' if inline else ''
             options = f'no_cpython_wrapper=True{more}, {OPTIONS}'
-            lines.append(f'@njit(({_types(node, TYPES)}), {options})')
+            lines.append(f'@njit(({_types(node)}), {options})')
         _strip(node)
         lines.append(ast.unparse(node))
     return '\n'.join(lines) + (_entered(entries) if entries else '') + '\n'
@@ -201,14 +201,14 @@ def _law(effect: Effect) -> ast.FunctionDef:
     return function
 
 
-def _types(function: ast.FunctionDef, types: Mapping[str, str]) -> str:
+def _types(function: ast.FunctionDef) -> str:
     """
     Return the types of a function's arguments as numba writes them.
 
     With the types given, each function is compiled once, not once more for every literal that it
     is called with; that makes the first start three times faster.
     """
-    names = [types[ast.unparse(argument.annotation or _FLOAT)] for argument in function.args.args]
+    names = [TYPES[ast.unparse(argument.annotation or _FLOAT)] for argument in function.args.args]
     return ''.join(f'{name}, ' for name in names)
 
 
