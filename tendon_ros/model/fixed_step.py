@@ -95,9 +95,9 @@ class FixedStep:
         run.rest({})
         wished = np.asarray(setpoints, dtype=np.float64)
         flat = wished.ravel().tolist()
-        rows = [0.0] * ((len(wished) - 1) // every + 1) * at['WIDTH_ROW']
+        rows = [0.0] * ((len(wished) - 1) // every + 1) * run.width
         m, d, w, c = run._m, run._d, run._work, run._carried
-        c[at['ROOM']] = float(len(rows) // at['WIDTH_ROW'])
+        c[at['ROOM']] = float(len(rows) // run.width)
         for tick in range(len(wished)):
             c[at['TICK']] = float(tick)
             self._begin()
@@ -116,7 +116,7 @@ class FixedStep:
                     f'{self._instrument.name}: the fixed-step simulation diverged near '
                     f'{c[at["CLOCK"]]:.4f} s; ask for a smaller step'
                 )
-        return Rows(self._instrument, at, np.array(rows).reshape(-1, at['WIDTH_ROW']))
+        return Rows(self._instrument, at, np.array(rows).reshape(-1, run.width))
 
     def _begin(self) -> None:
         """Let the kernel see anew which pulleys stick, slide which way, and what touches."""

@@ -19,6 +19,7 @@ from tendon_ros.effects import catalogue, find
 from tendon_ros.model.cable import elongation_at, hardened, uniform_cubic
 from tendon_ros.model.instrument import Curve, EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
+from tendon_ros.model.sensed import sensed
 from tendon_ros.model.structure import RING, Structure, structure_of
 
 FloatArray = NDArray[np.float64]
@@ -176,6 +177,10 @@ class _Packer:
                 f'({(RING - 2) * one.control_period:g} s), which is all that is remembered'
             )
         _put(d, at['SENSOR_RECTIFIED'], (numbers['sensor_rectified'] >= 0.5).astype(np.float64))
+        d[at['SENSORS']] = len(one.sensors)
+        for q, (source, index) in enumerate(sensed(one, at)):
+            d[at['SENSOR_SOURCE'] + q] = source
+            d[at['SENSOR_INDEX'] + q] = index
         _put(m, at['SENSOR_RESOLUTION'], [s.resolution for s in one.sensors])
         _put(m, at['SENSOR_NOISE'], [s.noise for s in one.sensors])
         for j, motor in enumerate(one.motors):

@@ -94,9 +94,7 @@ class Rows:
     @property
     def reading(self) -> FloatArray:
         """What the sensors say, shape (ticks, sensors), in the instrument's order of sensors."""
-        return self._columns(
-            self.structure['WIDTH_ROW'] - self.structure['Q'], self.structure['Q']
-        )
+        return self._columns(self.structure['READINGS'], len(self.instrument.sensors))
 
 
 class Runner:
@@ -132,6 +130,11 @@ class Runner:
         at = self.structure['COUNT']
         found = (int(n) for n in self._modes[at : at + 3])
         return dict(zip(('steps', 'rejected', 'events'), found, strict=True))
+
+    @property
+    def width(self) -> int:
+        """Columns of a recorded row."""
+        return self.structure['READINGS'] + len(self.instrument.sensors)
 
     def load(self, arrays: Arrays) -> None:
         """
@@ -197,7 +200,7 @@ class Runner:
         at = self.structure
         last = self.tick + ticks - (0 if smoothly else 1)
         count = last // every - (self.tick - 1) // every
-        rows = self.engine.array(np.zeros(count * at['WIDTH_ROW']))
+        rows = self.engine.array(np.zeros(count * self.width))
         self._carried[at['ROOM']] = float(count)
         self._carried[at['NOISY']] = 0.0 if noise is None else 1.0
         status = self.engine.module.rollout(
@@ -221,7 +224,7 @@ class Runner:
                 'gains, damping and inertias, or ask for a smaller tolerance'
             )
         written = int(self._carried[at['ROW']])
-        table = np.array(rows, dtype=np.float64).reshape(-1, at['WIDTH_ROW'])[:written]
+        table = np.array(rows, dtype=np.float64).reshape(-1, self.width)[:written]
         return Rows(self.instrument, at, table)
 
     def glide(self, end: float, signals: Signals) -> Rows:
@@ -234,7 +237,7 @@ class Runner:
         :raises SimulationError: where it diverges.
         """
         at = self.structure
-        row = self.engine.array(np.zeros(at['WIDTH_ROW']))
+        row = self.engine.array(np.zeros(self.width))
         status = self.engine.module.glide(
             self._m,
             self._d,

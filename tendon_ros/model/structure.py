@@ -16,14 +16,9 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from tendon_ros.model.instrument import Instrument
 
-SENSOR_SOURCES = (
-    'angle',
-    'velocity',
-    'motor_torque',
-    'contact_force',
-    'contact_torque',
-    'loop_torque',
-)
+#: sensors that a kernel has room for, or a multiple of it: what they read is data, so that
+#: another set of sensors is no other kernel
+SENSORS = 16
 
 #: the longest delay of a sensor, in controller periods
 RING = 64
@@ -44,9 +39,9 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'DRIVE': 'N', 'MOTION': 'N', 'PUSH': 'N', 'REFERENCE': 'U', 'ENCODER': 'U',
         'INTEGRAL': 'U', 'BRISTLE': 'N', 'DRY': 'N', 'GEARED': 'N', 'DRIVEN': '1', 'PUSHED': '1',
         'BRISTLED': '1', 'CURVE_CELLS': 'M', 'CURVE_OFFSET': 'M',
-        'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1',
-        'ACTIVE': '1', 'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1',
-        'SWITCH': '1',
+        'CONTACT_LAW': 'K', 'CONTACT_ON': 'K', 'SENSORS': '1', 'SENSOR_SOURCE': 'Q',
+        'SENSOR_INDEX': 'Q', 'SENSOR_RECTIFIED': 'Q', 'REMEMBERS': '1', 'ACTIVE': '1',
+        'STATE_LOOP': 'STATES', 'STATE_PULLEY': 'STATES', 'BREAKS': '1', 'SWITCH': '1',
         'TORQUES': '2', 'BUDGETS': '2', 'ELONGATIONS': '2', 'RELAXATIONS': '2',
         'TENSIONS': '2', 'WINDINGS': '2',
     },
@@ -83,15 +78,15 @@ class Structure:
     """
     What a compiled kernel is specialised to; instruments with equal structure share one.
 
-    ``order[i]`` is the instrument's index of the pulley at place i of the kernel.
+    ``order[i]`` is the instrument's index of the pulley at place i of the kernel; ``sensors`` is
+    the room for sensors, not their number.
     """
 
     order: tuple[int, ...]
     loop_pulley: tuple[tuple[int, ...], ...]
     contact_pulley: tuple[tuple[int, ...], ...]
     motor_pulley: tuple[int, ...]
-    sensor_source: tuple[int, ...]
-    sensor_index: tuple[int, ...]
+    sensors: int
 
     @cached_property
     def constants(self) -> Mapping[str, int | tuple[int, ...]]:
@@ -101,13 +96,12 @@ class Structure:
         band = max((max(row) - min(row) for row in rows if row), default=0)
         sizes: dict[str, int] = {
             'N': len(self.order), 'M': len(self.loop_pulley), 'K': len(self.contact_pulley),
-            'U': len(self.motor_pulley), 'Q': len(self.sensor_source), 'WIDTH': width,
+            'U': len(self.motor_pulley), 'Q': self.sensors, 'WIDTH': width,
             'BAND': band, 'SPAN': 2 * band + 1, 'RING': RING,
         }  # fmt: skip
         sizes['STATES'] = sizes['N'] + sizes['U'] + 2 * sizes['M']
         sizes['DIM'] = 2 * sizes['N'] + sizes['STATES']
-        own = 1 + 2 * sizes['N'] + 3 * sizes['U'] + sizes['M'] + sizes['K']
-        sizes['WIDTH_ROW'] = own + sizes['Q']
+        sizes['READINGS'] = 1 + 2 * sizes['N'] + 3 * sizes['U'] + sizes['M'] + sizes['K']
         out: dict[str, int | tuple[int, ...]] = dict(sizes)
         for array, places in PLACES.items():
             at = 0
@@ -118,8 +112,6 @@ class Structure:
         out['LOOP_PULLEY'] = _padded(self.loop_pulley, width)
         out['CONTACT_PULLEY'] = _padded(self.contact_pulley, width)
         out['MOTOR_PULLEY'] = self.motor_pulley
-        out['SENSOR_SOURCE'] = self.sensor_source
-        out['SENSOR_INDEX'] = self.sensor_index
         return out
 
     def __getitem__(self, name: str) -> int:
@@ -160,7 +152,7 @@ def structure_of(instrument: Instrument) -> Structure:
         tuple((row.name, tuple(row.route)) for row in instrument.links),
         tuple((c.name, tuple(c.route)) for c in instrument.contacts),
         tuple((m.name, m.pulley) for m in instrument.motors),
-        tuple((s.kind, s.of, s.through) for s in instrument.sensors),
+        -(-max(len(instrument.sensors), 1) // SENSORS) * SENSORS,
     )
 
 
@@ -170,7 +162,7 @@ def _structure(
     links: tuple[tuple[str, tuple[str, ...]], ...],
     contacts: tuple[tuple[str, tuple[str, ...]], ...],
     motors: tuple[tuple[str, str], ...],
-    sensors: tuple[tuple[str, str, str], ...],
+    sensors: int,
 ) -> Structure:
     """Return the structure of a network by its names: fits ask for it thousands of times."""
     n = len(pulleys)
@@ -183,26 +175,10 @@ def _structure(
     place = {pulleys[i]: at for at, i in enumerate(order)}
     loop_pulley = tuple(tuple(place[name] for name in route) for _, route in links)
     contact_pulley = tuple(tuple(place[name] for name in route) for _, route in contacts)
-    width = max((len(row) for row in (*loop_pulley, *contact_pulley)), default=1)
-    source: list[int] = []
-    index: list[int] = []
-    through = [name for name, _ in links]
-    for kind, of, link in sensors:
-        source.append(SENSOR_SOURCES.index(kind))
-        if kind in ('angle', 'velocity'):
-            index.append(place[of])
-        elif kind == 'motor_torque':
-            index.append([name for name, _ in motors].index(of))
-        elif kind == 'loop_torque':
-            k = through.index(link)
-            index.append(width * k + loop_pulley[k].index(place[of]))
-        else:
-            index.append([name for name, _ in contacts].index(of))
     return Structure(
         order=order,
         loop_pulley=loop_pulley,
         contact_pulley=contact_pulley,
         motor_pulley=tuple(place[pulley] for _, pulley in motors),
-        sensor_source=tuple(source),
-        sensor_index=tuple(index),
+        sensors=sensors,
     )

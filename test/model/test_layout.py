@@ -25,6 +25,7 @@ def test_numbers_do_not_make_another_kernel(bench_rig):
     heavy = replace(rig, pulleys=tuple(replace(p, inertia=1.0) for p in rig.pulleys))
     assert structure_of(heavy) == structure_of(rig)
     assert structure_of(bench_rig.five_pulleys(wall='', friction=0.0)) == structure_of(rig)
+    assert structure_of(replace(rig, sensors=rig.sensors[:1])) == structure_of(rig)
     assert structure_of(replace(rig, loops=rig.loops[:2])) != structure_of(rig)
 
 

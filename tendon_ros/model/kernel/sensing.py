@@ -9,10 +9,10 @@ from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, AHEAD, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
     Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
-    MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, Q, READING,
-    REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
-    SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SIDE,
-    START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH, WIDTH_ROW,
+    MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
+    READINGS, REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
+    SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SENSORS,
+    SIDE, START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
 )  # fmt: skip
 
 SMALLEST = 1e-10  # times nearer than this are one [s]
@@ -47,11 +47,12 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
     (``torques`` 0) before.
     """
     tick = int(c[TICK])
-    for q in range(Q):
-        source = SENSOR_SOURCE[q]
+    sensors = d[SENSORS]
+    for q in range(sensors):
+        source = d[SENSOR_SOURCE + q]
         if (source == 2) != (torques == 1):
             continue
-        index = SENSOR_INDEX[q]
+        index = d[SENSOR_INDEX + q]
         truth = 0.0
         if source == 0:
             truth = w[at + index]
@@ -73,7 +74,7 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
         if d[SENSOR_RECTIFIED + q] == 1:
             value = abs(value)
         if c[NOISY] > 0.0:
-            value += m[SENSOR_NOISE + q] * noise[Q * int(c[TICK] - c[DRAWN]) + q]
+            value += m[SENSOR_NOISE + q] * noise[sensors * int(c[TICK] - c[DRAWN]) + q]
         if m[SENSOR_RESOLUTION + q] > 0.0:
             counts = value / m[SENSOR_RESOLUTION + q] + 0.5
             whole = int(counts)
@@ -95,7 +96,7 @@ def record(
     tick = int(c[TICK])
     if tick % every != 0:
         return
-    o = WIDTH_ROW * int(c[ROW])
+    o = (READINGS + d[SENSORS]) * int(c[ROW])
     if c[ROW] >= c[ROOM]:
         return
     c[ROW] += 1.0
@@ -118,7 +119,7 @@ def record(
         rows[o + j] = w[SIDE + i] * w[BUDGET + i]
         rows[o + U + j] = w[BUDGET + i]
     o += 2 * U
-    for q in range(Q):
+    for q in range(d[SENSORS]):
         rows[o + q] = c[READING + q]
 
 

@@ -32,22 +32,19 @@ N: int  # pulleys
 M: int  # cable loops and couplings
 K: int  # contacts
 U: int  # motors
-Q: int  # sensors
+Q: int  # room for sensors
 WIDTH: int  # most pulleys that one loop or contact touches; shorter rows are padded with radius 0
 BAND: int  # half bandwidth of the network's matrix, pulleys in kernel order
 SPAN: int  # 2 * BAND + 1
 STATES: int  # room for auxiliary states
 DIM: int  # 2 * N + STATES
-WIDTH_ROW: int  # columns of a recorded row: 1 + 2 * N + 3 * U + M + K + Q
+READINGS: int  # where they begin in a recorded row: 1 + 2 * N + 3 * U + M + K
 RING: int  # remembered values of each sensor
 
 # --- who touches whom --------------------------------------------------------
 LOOP_PULLEY: Sequence[int]  # M * WIDTH
 CONTACT_PULLEY: Sequence[int]  # K * WIDTH
 MOTOR_PULLEY: Sequence[int]  # U
-SENSOR_SOURCE: Sequence[int]  # Q: 0 angle, 1 velocity, 2 motor torque, 3 contact force,
-#                                  4 contact torque, 5 torque of a loop or coupling on a pulley
-SENSOR_INDEX: Sequence[int]  # Q: pulley, motor, contact or entry of LOOP_PULLEY
 
 # --- places in m -------------------------------------------------------------
 INERTIA: int
@@ -102,6 +99,9 @@ CURVE_CELLS: int  # M
 CURVE_OFFSET: int  # M: where in m the four coefficients of each cell begin
 CONTACT_LAW: int  # K: 0 spring and damper, 1 Hunt-Crossley
 CONTACT_ON: int  # K
+SENSORS: int  # how many there are
+SENSOR_SOURCE: int  # Q: what each reads (see tendon_ros.model.sensed)
+SENSOR_INDEX: int  # Q: pulley, motor, contact or entry of LOOP_PULLEY
 SENSOR_RECTIFIED: int  # Q
 REMEMBERS: int  # 1 where some sensor is delayed
 ACTIVE: int  # number of auxiliary states in use
