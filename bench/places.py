@@ -26,8 +26,7 @@ def blamed(case: Case) -> list[str]:
     recordings = admitted(list(case.recordings.values()), case.instrument).recordings
     problem = prepared(recordings, case.instrument).problem
     places = Places(problem, Steps(problem, (), 1, lambda _what, _done: None).started())
-    shares = places.shares(most=1)
-    return [shares[0][0], *places.same(shares[0][0])] if shares else []
+    return [name for one in places.shares(most=1) for name in (one.place, *one.same)]
 
 
 def main() -> None:

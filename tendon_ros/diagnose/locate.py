@@ -82,15 +82,15 @@ def _blamed(
     rest: dict[tuple[str, str], float] = {}
     if not stays > 0.0:
         return rest, ()
-    places = Places(problem, believed)
-    taken = {place: power for place, power in places.shares() if power.sum() > 0.0}
-    total = sum(float(power.sum()) for power in taken.values())
-    for place, power in taken.items():
-        part = stays * float(power.sum()) / total
-        _spread(rest, place, np.maximum(power, 0.0), texts, part)
-    order = sorted(taken, key=lambda p: -float(taken[p].sum()))[:FIRST]
-    same = [name for first in order[:1] for name in places.same(first)]
-    return rest, tuple(dict.fromkeys([*order[:1], *same, *order[1:]]))
+    taken = [one for one in Places(problem, believed).shares() if one.power.sum() > 0.0]
+    total = sum(float(one.power.sum()) for one in taken)
+    for one in taken:
+        part = stays * float(one.power.sum()) / total
+        _spread(rest, one.place, np.maximum(one.power, 0.0), texts, part)
+    order = sorted(taken, key=lambda one: -float(one.power.sum()))[:FIRST]
+    same = [place for first in order[:1] for place in first.same]
+    names = [one.place for one in order]
+    return rest, tuple(dict.fromkeys([*names[:1], *same, *names[1:]]))
 
 
 def _spread(

@@ -9,7 +9,8 @@ what that place feels, its angle and direction, its torque or its force.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 import math
 
 import numpy as np
@@ -32,7 +33,21 @@ NOISE = 0.05  # power in noise deviations that says nothing of a place
 LEVELS = 8  # of what a place feels
 FINE = 24  # of an encoder's angle: an error of its wheel comes back within a turn
 RELAXING = (0.5, 4.0)  # [s] in which a cable forgets a force
-SAME = 0.99  # part of what one place could answer that another can from which on they are as one
+SAME = 0.99  # part of what one place answers that another can from which on they are as one
+
+
+@dataclass(frozen=True)
+class Blamed:
+    """
+    A place that may be to blame.
+
+    ``power``: what it takes from each sample, shape (samples,); ``same``: places that no channel
+    tells from it where that is, by what their laws leave.
+    """
+
+    place: str
+    power: FloatArray
+    same: tuple[str, ...]
 
 
 class Places:
@@ -78,65 +93,65 @@ class Places:
                 readings.setdefault(place, np.zeros_like(self._left))[span] = 1.0
         return [*found, *readings.items()]
 
-    def shares(self, most: int = 4) -> list[tuple[str, FloatArray]]:
+    def shares(self, most: int = 4) -> list[Blamed]:
         """
         Return what the places explain, the best first, each of what the ones before leave.
 
         :param most: so many places.
-        :return: place, and the power that it takes from each sample, shape (samples,).
+        :return: the places.
         """
         left, moved = self._left, self._moved
         rest = dict(self._directions)
-        found: list[tuple[str, FloatArray]] = []
+        found: list[Blamed] = []
         while rest and len(found) < most:
             trials = {place: self._imitated(left, moved, d) for place, d in rest.items()}
-            stays = {place: float(kept @ kept) for place, (kept, _) in trials.items()}
-            best = self._blamed(left, moved, stays)
-            if best is None:
+            order = self._blamed(left, moved, {place: kept for place, (kept, _) in trials.items()})
+            if not order:
                 break
+            best, *same = order
             kept, moved = trials[best]
-            found.append((best, left**2 - kept**2))
+            found.append(Blamed(best, left**2 - kept**2, tuple(same)))
             left = kept
             del rest[best]
         return found
 
-    def _blamed(self, left: FloatArray, moved: FloatArray, stays: dict[str, float]) -> str | None:
+    def _blamed(
+        self, left: FloatArray, moved: FloatArray, kept: dict[str, FloatArray]
+    ) -> list[str]:
         """
-        Return the place to blame; None where none helps.
+        Return the place to blame and those that no channel tells from it; none where none helps.
 
-        ``stays``: what even any size at any time at a place leaves. That decides; where it is
+        ``kept``: what even any size at any time at a place leaves. That decides; where it is
         much alike, what a law of the place leaves does; and that alone where no channel can.
         """
         whole, noise = float(left @ left), NOISE * len(left)
+        stays = {place: float(one @ one) for place, one in kept.items()}
         least = ALIKE * (whole - min(stays.values()))
         if least <= 0.0:
-            return None
+            return []
         near = {place: x + noise for place, x in stays.items() if whole - x >= least}
         law = {p: max(whole - self._lawful(p, left, moved), 0.0) + noise for p in near}
         best = min(near, key=lambda p: math.log(near[p]) + LAWFUL * math.log(law[p]))
-        alike = [place for place in (best, *self.same(best)) if place in near]
-        return min(alike, key=lambda place: law[place])
+        same = self._same(best, near, left**2 - kept[best] ** 2)
+        return sorted([best, *same], key=lambda place: law[place])
 
-    def same(self, place: str) -> list[str]:
+    def _same(self, place: str, others: Iterable[str], power: FloatArray) -> list[str]:
         """
         Return the places that only a law could tell from one, and no channel can.
 
-        A motor's torque, its reading and a torque on the pulley that it turns are such.
-
-        :param place: which place.
-        :return: the others, in no order that means anything.
+        A motor's torque, its reading and a torque on the pulley that it turns are such; so are a
+        wall and the cable that presses on it, where all that is left lies in contact. ``power``:
+        what the place takes from each sample, which says when it is asked.
         """
         own = self._directions[place]
+        weight = np.maximum(self._summed(power), 0.0)
+        weight /= max(float(weight.sum()), 1e-300)
 
-        def answered(by: FloatArray, of: FloatArray) -> float:
-            square = np.maximum(self._summed(by**2), 1e-300)
-            return float((self._summed(by * of) ** 2 / square).sum() / (of @ of))
+        def alike(other: FloatArray) -> float:
+            squares = np.maximum(self._summed(own**2) * self._summed(other**2), 1e-300)
+            return float(weight @ (self._summed(own * other) ** 2 / squares))
 
-        return [
-            name
-            for name, other in self._directions.items()
-            if name != place and min(answered(own, other), answered(other, own)) > SAME
-        ]
+        return [p for p in others if p != place and alike(self._directions[p]) > SAME]
 
     def _imitated(
         self, left: FloatArray, moved: FloatArray, direction: FloatArray

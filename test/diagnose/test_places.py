@@ -19,35 +19,39 @@ def blamed(bench, measured_on):
 
 
 @pytest.mark.parametrize(
-    ('effect', 'place', 'values'),
+    ('effect', 'place', 'values', 'same'),
     [
-        ('coulomb_friction', 'pulley_3', {'torque': 0.2}),
-        ('viscous_friction', 'pulley_M', {'damping': 1.0}),
-        ('joint_spring', 'pulley_1', {'stiffness': 1.0}),
-        ('torque_gain', 'motor_M', {'gain': 1.3}),
-        ('torque_gain', 'motor_L', {'gain': 1.3}),
-        ('load_cell_gain', 'load_cell', {'gain': 1.2}),
-        ('encoder_gain', 'encoder_1', {'gain': 1.05}),
-        ('encoder_gain', 'encoder_L', {'gain': 1.05}),
+        ('coulomb_friction', 'pulley_3', {'torque': 0.2}, set()),
+        ('viscous_friction', 'pulley_M', {'damping': 1.0}, {'motor_M', 'torque_M'}),
+        ('joint_spring', 'pulley_1', {'stiffness': 1.0}, set()),
+        ('torque_gain', 'motor_M', {'gain': 1.3}, {'pulley_M', 'torque_M'}),
+        ('torque_gain', 'motor_L', {'gain': 1.3}, {'pulley_L', 'torque_L'}),
+        ('load_cell_gain', 'load_cell', {'gain': 1.2}, set()),
+        ('encoder_gain', 'encoder_1', {'gain': 1.05}, set()),
+        ('encoder_gain', 'encoder_L', {'gain': 1.05}, {'cable_L3'}),
     ],
 )
-def test_a_place_is_told_by_direction_and_by_what_it_feels(blamed, effect, place, values):
-    found = blamed(effect, place, values)
-    assert found[0][0] == place
+def test_a_place_is_told_by_direction_and_by_what_it_feels(blamed, effect, place, values, same):
+    first = blamed(effect, place, values)[0]
+    assert (first.place, set(first.same)) == (place, same)
 
 
-def test_places_that_no_channel_tells_apart_are_the_same(bench, measured_on):
-    problem = prepared([measured_on(bench, touching=True)], bench).problem
-    places = Places(problem, problem.fitted(problem.empty))
-    assert places.same('pulley_M') == ['motor_M', 'torque_M']
-    assert places.same('motor_L') == ['pulley_L', 'torque_L']
-    assert places.same('pulley_3') == []
+def test_a_wall_and_the_cable_that_presses_on_it_are_the_same_without_inner_encoders(
+    bench, measured_on
+):
+    softer = ('contact_stiffness', 'contact', {'scale': 0.5})
+    run = measured_on(
+        bench, softer, trajectory='paper_fig12', settings=(), touching=True, without=('pulley/',)
+    )
+    problem = prepared([run], bench).problem
+    first = Places(problem, problem.fitted(problem.empty)).shares()[0]
+    assert {'contact', 'cable_L3'} <= {first.place, *first.same}
 
 
 def test_what_places_take_adds_up_to_no_more_than_there_is(bench, measured_on):
     run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.2}))
     problem = prepared([run], bench).problem
     fit = problem.fitted(problem.empty)
-    taken = [float(t.sum()) for _, t in Places(problem, fit).shares()]
+    taken = [float(one.power.sum()) for one in Places(problem, fit).shares()]
     assert 0.0 < sum(taken) <= fit.cost
     assert taken == sorted(taken, reverse=True)
