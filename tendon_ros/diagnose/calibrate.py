@@ -24,7 +24,7 @@ from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import as_recorded, said_of_torque
-from tendon_ros.identify.explanation import BRISTLE, is_bristle, Model
+from tendon_ros.identify.explanation import BENT, BRISTLES, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.magnitude import Magnitude, magnitude_of
 from tendon_ros.model.instrument import EffectUse, Instrument
@@ -162,8 +162,13 @@ def _start(
         candidate = Candidate(use.effect, use.place, magnitude=magnitude)
         neutral = {p.name: p.neutral for p in candidate.parameters}
         model = model.joined(candidate, {**neutral, **use.parameters})
-    known = {use.place: BRISTLE.place(use.parameters['angle']) for use in bristles}
-    bristle = {place: known.get(place, z) for place, z in model.bristle.items()}
+    known = {
+        (use.place, name): axis.place(use.parameters[name])
+        for use in [*bristles, *(use for use in effects if use.effect == BENT)]
+        for name, axis in BRISTLES.items()
+        if use.parameters.get(name, 0.0) > 0.0
+    }
+    bristle = {key: known.get(key, z) for key, z in model.bristle.items()}
     return replace(model, bristle=bristle)
 
 

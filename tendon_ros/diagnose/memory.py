@@ -62,7 +62,7 @@ class Memory:
                 Model(
                     tuple(_candidate(*c) for c in row['causes']),
                     tuple(tuple(z) for z in row['z']),
-                    dict(row['bristle']),
+                    {(place, name): float(z) for place, name, z in row['bristle']},
                     np.array(row['moved'], dtype=np.float64),
                 )
                 for row in data['models']
@@ -80,7 +80,7 @@ class Memory:
             {
                 'causes': [[c.effect, c.place, c.only, c.given, c.magnitude] for c in m.causes],
                 'z': [list(row) for row in m.z],
-                'bristle': dict(m.bristle),
+                'bristle': [[*key, z] for key, z in m.bristle.items()],
                 'moved': m.moved.tolist(),
             }
             for m in models

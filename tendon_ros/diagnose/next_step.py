@@ -47,7 +47,7 @@ def next_experiments(
     chosen: list[tuple[Suggestion, NextExperiment]] = []
     model = found.final.model
     for open_ones, pairs in (*_rivals(problem, found), *_members(found, companies)):
-        others = [c.use(model.values(n)) for n, c in enumerate(model.causes) if n not in open_ones]
+        others = [model.use(n) for n in range(len(model.causes)) if n not in open_ones]
         settled = replace(instrument, effects=in_force(instrument.effects, others))
         try:
             suggestions = together(separating(settled, measured, pairs, jobs))

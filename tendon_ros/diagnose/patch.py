@@ -70,11 +70,7 @@ def patched(
     )
     # a motor's torque constant is no number of the file: it stays an effect
     known = [t.use(z) for t, z in far if t.given or t.quantity == 'torque_gain']
-    accepted = [
-        cause.use(model.values(k))
-        for k, cause in enumerate(model.causes)
-        if cause.acts_in(recording)
-    ]
+    accepted = [model.use(k) for k, cause in enumerate(model.causes) if cause.acts_in(recording)]
     bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
     return replace(

@@ -22,9 +22,13 @@ from tendon_ros.model.instrument import EffectUse
 FloatArray = NDArray[np.float64]
 
 BENT = 'presliding_friction'
-#: dry friction builds up over a fraction of a degree in every bearing that was ever measured; what
-#: takes more than its upper end is pre-sliding friction by name
-BRISTLE = Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0)
+#: what dry friction has beside its size. It builds up over a fraction of a degree in every bearing
+#: that was ever measured; what takes more than the upper end is pre-sliding friction by name. And
+#: what holds lets go in time, since motors tremble within their counts
+BRISTLES = {
+    'angle': Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0),
+    'dither': Axis('dither', 'rad/s', 1e-7, 1e-2, 1e-5, math.log(4.0), log=True, spread=1.0),
+}
 
 
 @dataclass(frozen=True)
@@ -32,14 +36,14 @@ class Model:
     """
     Causes with places on their axes, and what else moves.
 
-    ``z``: for each cause the places of its parameters; ``bristle``: by pulley place, for dry
-    friction without a pre-sliding angle of its own; ``moved``: of each tolerance, in its
-    deviations, shape (tolerances,).
+    ``z``: for each cause the places of its parameters; ``bristle``: by pulley place and name, what
+    dry friction has beside its size, the pre-sliding angle only where no cause has it; ``moved``:
+    of each tolerance, in its deviations, shape (tolerances,).
     """
 
     causes: tuple[Candidate, ...]
     z: tuple[tuple[float, ...], ...]
-    bristle: Mapping[str, float]
+    bristle: Mapping[tuple[str, str], float]
     moved: FloatArray
 
     def values(self, k: int) -> dict[str, float]:
@@ -51,6 +55,18 @@ class Model:
         """
         return self.causes[k].coordinates.values(self.z[k])
 
+    def use(self, k: int) -> EffectUse:
+        """
+        Return a cause in use.
+
+        :param k: which.
+        :return: the effect with its parameters.
+        """
+        cause, values = self.causes[k], self.values(k)
+        if cause.effect == BENT:
+            values['dither'] = BRISTLES['dither'].value(self.bristle[cause.place, 'dither'])
+        return cause.use(values)
+
     def without(self, *which: int) -> Model:
         """
         Return the model without some causes, nothing refitted.
@@ -60,13 +76,7 @@ class Model:
         """
         kept = [k for k in range(len(self.causes)) if k not in which]
         causes = tuple(self.causes[k] for k in kept)
-        left = _dry_places(causes)
-        return Model(
-            causes,
-            tuple(self.z[k] for k in kept),
-            {place: z for place, z in self.bristle.items() if place in left},
-            self.moved,
-        )
+        return Model(causes, tuple(self.z[k] for k in kept), self._bristles(causes), self.moved)
 
     def joined(self, cause: Candidate, values: Mapping[str, float]) -> Model:
         """
@@ -78,20 +88,23 @@ class Model:
         """
         causes = (*self.causes, cause)
         row = cause.coordinates.place(values)
-        bristle = {place: self.bristle.get(place, 0.0) for place in _dry_places(causes)}
-        return Model(causes, (*self.z, row), bristle, self.moved)
+        return Model(causes, (*self.z, row), self._bristles(causes), self.moved)
 
-
-def _dry_places(causes: Sequence[Candidate]) -> list[str]:
-    """Return the pulleys whose dry friction needs an angle to build up over."""
-    dry = {c.place for c in causes if find(c.effect).hook == 'budget'}
-    own = {c.place for c in causes if c.effect == BENT}
-    return sorted(dry - own)
+    def _bristles(self, causes: Sequence[Candidate]) -> dict[tuple[str, str], float]:
+        """Return what the dry friction of some causes has beside its size, as far as known."""
+        dry = sorted({c.place for c in causes if find(c.effect).hook == 'budget'})
+        own = {c.place for c in causes if c.effect == BENT}
+        return {
+            (place, name): self.bristle.get((place, name), 0.0)
+            for place in dry
+            for name in BRISTLES
+            if name != 'angle' or place not in own
+        }
 
 
 def bristles(model: Model, own: Sequence[EffectUse], least: float) -> list[EffectUse]:
     """
-    Return the effects that let dry friction build up over an angle.
+    Return the effects that let dry friction build up over an angle, and go under a trembling.
 
     :param model: the model.
     :param own: effects of the instrument file.
@@ -100,13 +113,12 @@ def bristles(model: Model, own: Sequence[EffectUse], least: float) -> list[Effec
     :return: one effect for each pulley with dry friction, but for those whose file knows better.
     """
     known = {use.place for use in own if use.effect == BENT and not is_bristle(use)}
-    return [
-        EffectUse(
-            BENT, place, {'torque': 0.0, 'angle': max(least, BRISTLE.value(z))}, instead=True
-        )
-        for place, z in model.bristle.items()
-        if place not in known
-    ]
+    found = []
+    for place in [p for p, name in model.bristle if name == 'angle' and p not in known]:
+        shape = {name: axis.value(model.bristle[place, name]) for name, axis in BRISTLES.items()}
+        shape['angle'] = max(least, shape['angle'])
+        found.append(EffectUse(BENT, place, {'torque': 0.0, **shape}, instead=True))
+    return found
 
 
 def is_bristle(use: EffectUse) -> bool:

@@ -76,7 +76,7 @@ class Residuals:
         """
         always = [t.use(z) for t, z in self.moved(model)]
         always += bristles(model, self.rollouts.instrument.effects, self.rollouts.tolerance)
-        own = [cause.use(model.values(k)) for k, cause in enumerate(model.causes)]
+        own = [model.use(k) for k in range(len(model.causes))]
         return [
             always + [use for c, use in zip(model.causes, own, strict=True) if c.acts_in(s.name)]
             for s in self._segments

@@ -9,7 +9,7 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.explanation import BRISTLE, Model
+from tendon_ros.identify.explanation import BRISTLES, Model
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -58,9 +58,10 @@ def sticking(problem: Problem, fit: Fit) -> list[BoolArray | None]:
 
 def _angle(model: Model, k: int, cause: Candidate) -> float:
     """Return the angle over which a cause's friction builds up [rad]."""
-    if cause.place in model.bristle:
-        return BRISTLE.value(model.bristle[cause.place])
-    return model.values(k).get('angle', BRISTLE.centre)
+    axis = BRISTLES['angle']
+    if (cause.place, 'angle') in model.bristle:
+        return axis.value(model.bristle[cause.place, 'angle'])
+    return model.values(k).get('angle', axis.centre)
 
 
 def _travel(angle: FloatArray, period: float) -> FloatArray:

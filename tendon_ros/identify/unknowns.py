@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.axis import Axis
-from tendon_ros.identify.explanation import BRISTLE, Model
+from tendon_ros.identify.explanation import BRISTLES, Model
 from tendon_ros.identify.residuals import Residuals
 
 FloatArray = NDArray[np.float64]
@@ -34,14 +34,15 @@ class Unknowns(Residuals):
         for row in like.z:
             rows.append(tuple(float(z) for z in x[at : at + len(row)]))
             at += len(row)
-        bristle = {p: float(z) for p, z in zip(like.bristle, x[at:], strict=False)}
+        bristle = {key: float(z) for key, z in zip(like.bristle, x[at:], strict=False)}
         at += len(bristle)
         return Model(like.causes, tuple(rows), bristle, x[at:].copy())
 
     def axes(self, model: Model) -> list[Axis]:
         """Return the axes of all unknowns, in their order."""
         own = [axis for c in model.causes for axis in c.coordinates.axes]
-        return [*own, *(BRISTLE for _ in model.bristle), *(t.axis for t in self.tolerances)]
+        bent = [BRISTLES[name] for _, name in model.bristle]
+        return [*own, *bent, *(t.axis for t in self.tolerances)]
 
     def prior(self, model: Model) -> FloatArray:
         """
@@ -69,4 +70,5 @@ class Unknowns(Residuals):
             f'{c.effect}@{c.place}@{c.only}.{p.name}' for c in model.causes for p in c.parameters
         ]
         moved = [f'{t.place}.{t.quantity}' for t in self.tolerances]
-        return [*own, *(f'{place}.bristle' for place in model.bristle), *moved]
+        bent = [f'{place}.bristle.{name}' for place, name in model.bristle]
+        return [*own, *bent, *moved]

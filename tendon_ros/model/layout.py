@@ -150,7 +150,7 @@ class _Packer:
         d = np.zeros(at.length('d'), dtype=np.int64)
         order = np.array(at.order)
         n = len(order)
-        for name in ('inertia', 'damping', 'breakaway'):
+        for name in ('inertia', 'damping', 'breakaway', 'dither'):
             _put(m, at[name.upper()], numbers[name][order])
         _put(m, at['LASH'], 0.5 * numbers['lash'][order])
         width = at['WIDTH']

@@ -29,6 +29,7 @@ class Numbers:
             'inertia': np.array([p.inertia + gear.get(p.name, 0.0) for p in one.pulleys]),
             'damping': np.array([p.damping for p in one.pulleys]),
             'breakaway': np.zeros(len(one.pulleys)),
+            'dither': np.zeros(len(one.pulleys)),
             'lash': np.zeros(len(one.pulleys)),
             'radius': one.routing(),
             'arm': one.routing(),

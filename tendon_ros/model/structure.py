@@ -26,10 +26,11 @@ RING = 64
 #: sizes of the named places in each array, in terms of the sizes of the network
 PLACES: Mapping[str, Mapping[str, str]] = {
     'm': {
-        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'LASH': 'N', 'RADIUS': 'M*WIDTH',
-        'ARM': 'M*WIDTH', 'PRELOAD': 'M', 'SCALE': 'M', 'LOOP_DAMPING': 'M', 'PLAY': 'M',
-        'CURVE_START': 'M', 'CURVE_RATE': 'M', 'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH',
-        'CONTACT_STIFFNESS': 'K', 'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
+        'INERTIA': 'N', 'DAMPING': 'N', 'BREAKAWAY': 'N', 'DITHER': 'N', 'LASH': 'N',
+        'RADIUS': 'M*WIDTH', 'ARM': 'M*WIDTH', 'PRELOAD': 'M', 'SCALE': 'M',
+        'LOOP_DAMPING': 'M', 'PLAY': 'M', 'CURVE_START': 'M', 'CURVE_RATE': 'M',
+        'CURVE_BELOW': 'M', 'CONTACT_RATIO': 'K*WIDTH', 'CONTACT_STIFFNESS': 'K',
+        'CONTACT_DAMPING': 'K', 'CONTACT_POSITION': 'K',
         'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U', 'KP': 'U',
         'KI': 'U', 'KD': 'U', 'AHEAD': 'U', 'LIMIT': 'U', 'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q',
         'SENSOR_DELAY': 'Q', 'SENSOR_RESOLUTION': 'Q', 'SENSOR_NOISE': 'Q', 'PERIOD': '1',

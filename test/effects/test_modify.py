@@ -12,7 +12,7 @@ PLACES = [(e, kind) for e in MODIFIERS for kind in e.kinds]
 
 #: arrays that belong to each kind of place
 OWN = {
-    'pulley': {'inertia', 'damping', 'breakaway'},
+    'pulley': {'inertia', 'damping', 'breakaway', 'dither'},
     'cable': {'pretension', 'scale', 'hardening', 'loop_damping', 'play'},
     'coupling': {'scale', 'hardening', 'loop_damping', 'play'},
     'motor': {'motor_gain', 'motor_bias', 'motor_limit', 'play'},
@@ -30,6 +30,7 @@ class Numbers:
             'inertia': np.array([1e-3, 2e-3, 4e-2]),
             'damping': np.array([0.05, 0.02, 0.9]),
             'breakaway': np.array([0.0, 0.0, 0.0]),
+            'dither': np.array([0.0, 0.0, 0.0]),
             'lash': np.array([0.0, 0.0, 0.0]),
             'radius': np.array([[0.03, -0.02, 0.0], [0.0, 0.03, -0.03], [-35.0, 0.0, 1.0]]),
             'pretension': np.array([5.0, 6.0, 0.0]),
@@ -98,8 +99,8 @@ def test_only_the_place_is_changed(effect, kind):
             'presliding_friction',
             'pulley',
             1,
-            {'torque': 0.1, 'angle': 0.004},
-            {('breakaway', 1): 0.004},
+            {'torque': 0.1, 'angle': 0.004, 'dither': 1e-3},
+            {('breakaway', 1): 0.004, ('dither', 1): 1e-3},
         ),
         ('pretension', 'cable', 1, {'scale': 0.5}, {('pretension', 1): 3.0}),
         (

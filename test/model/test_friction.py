@@ -170,3 +170,19 @@ def test_presliding_is_a_spring_at_first(body):
     rows = pushed(one, np.full(1000, 0.002))
     # far below the budget it settles where the spring torque / angle balances
     assert rows.angle[-1, 0] == pytest.approx(0.002 / (0.2 / 0.01), rel=0.01)
+
+
+def test_a_trembling_takes_friction_away_from_holds_and_slow_motions(body):
+    dither, angle = 1e-3, 5e-4
+    shape = {'torque': 0.2, 'angle': angle, 'dither': dither}
+    one = body(effects=(EffectUse('presliding_friction', 'pulley_body', shape),))
+    one = replace(one, pulleys=(replace(one.pulleys[0], damping=0.0),))
+    # at 3 mrad/s for two seconds, then held for one
+    time = 1e-3 * np.arange(3001)
+    rows = predict(
+        one, Signals.through(0.0, 1e-3, 3e-3 * np.minimum(time, 2.0)[None, :]), ('body',), 3000
+    )
+    slow = 0.2 * 3e-3 / (3e-3 + dither)
+    assert rows.effort[1900, 0] == pytest.approx(slow, rel=1e-3)
+    held = slow * np.exp(-(time[2100:] - 2.0) * dither / angle)
+    assert rows.effort[2100:, 0] == pytest.approx(held, rel=5e-3)

@@ -12,7 +12,7 @@ from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, AHEAD, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
     BUDGET_W, COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON,
     CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING,
-    DRIVE, DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, GEARED, INERTIA,
+    DITHER, DRIVE, DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, GEARED, INERTIA,
     INPUT, INTEGRAL, Ints, K, KD, KI, KP, LIMIT, LOAD, LOAD_T, LOAD_W, LOAD_WAY,
     LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N,
     PUSH, PUSHED, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B, STATE_RATE, STATE_T, STATE_Z,
@@ -128,15 +128,17 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
     for i in range(N):
         z = d[BRISTLE + i]
         if z >= 0:
-            # Dahl's law in units of the breakaway angle: the state is the part of the budget used
+            # Dahl's law in units of the breakaway angle: the state is the part of the budget used;
+            # a trembling goes there and back, and only takes away from it
             omega = w[at + N + i]
             value = w[at + 2 * N + z]
             per = 1.0 / m[BREAKAWAY + i]
             way = 1.0 if omega > 0.0 else -1.0
-            w[STATE_RATE + z] = per * omega * (1.0 - way * value)
+            dither = m[DITHER + i]
+            w[STATE_RATE + z] = per * (omega * (1.0 - way * value) - dither * value)
             w[STATE_A + z] = 0.0
             w[STATE_B + z] = per * (1.0 - way * value)
-            w[STATE_Z + z] = -per * way * omega
+            w[STATE_Z + z] = -per * (way * omega + dither)
             w[STATE_T + z] = -w[BUDGET + i]
 
 

@@ -50,6 +50,7 @@ MOTOR_PULLEY: Sequence[int]  # U
 INERTIA: int
 DAMPING: int
 BREAKAWAY: int  # pre-sliding angle of the dry friction [rad]; 0: it sticks rigidly
+DITHER: int  # speed of a trembling under which that friction lets go [rad/s]
 LASH: int  # half of the play that friction holds, between a pulley and its cables [rad]
 RADIUS: int  # M * WIDTH, signed: how an angle lengthens the loop [m]
 ARM: int  # M * WIDTH, signed: how its tension turns the pulley [m]
