@@ -7,7 +7,7 @@ Every unknown has a place on its axis, so that fits and priors need no units.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import math
 
 import numpy as np
@@ -23,14 +23,12 @@ FloatArray = NDArray[np.float64]
 
 BENT = 'presliding_friction'
 #: what dry friction has beside its size. It builds up over a fraction of a degree in every bearing
-#: that was ever measured, over more in a cable; and what holds lets go in time, since motors
-#: tremble within their counts
+#: that was ever measured; what takes more than the upper end is pre-sliding friction by name. And
+#: what holds lets go in time, since motors tremble within their counts
 BRISTLES = {
-    'angle': Axis('angle', 'rad', 1e-6, 0.1, 1e-3, math.log(4.0), log=True, spread=1.0),
+    'angle': Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0),
     'dither': Axis('dither', 'rad/s', 1e-7, 1e-2, 1e-5, math.log(4.0), log=True, spread=1.0),
 }
-#: the angle where friction is Coulomb's: what takes more is pre-sliding friction by name
-PLAIN, SHORT = 'coulomb_friction', replace(BRISTLES['angle'], high=BENDING)
 
 
 @dataclass(frozen=True)
@@ -66,29 +64,8 @@ class Model:
         """
         cause, values = self.causes[k], self.values(k)
         if cause.effect == BENT:
-            values['dither'] = self.beside(cause.place, 'dither')
+            values['dither'] = BRISTLES['dither'].value(self.bristle[cause.place, 'dither'])
         return cause.use(values)
-
-    def axis(self, place: str, name: str) -> Axis:
-        """
-        Return the axis of what dry friction has beside its size.
-
-        :param place: the pulley.
-        :param name: ``angle`` or ``dither``.
-        :return: the axis.
-        """
-        plain = any(c.effect == PLAIN and c.place == place for c in self.causes)
-        return SHORT if plain and name == 'angle' else BRISTLES[name]
-
-    def beside(self, place: str, name: str) -> float:
-        """
-        Return what dry friction has beside its size.
-
-        :param place: the pulley.
-        :param name: ``angle`` [rad] or ``dither`` [rad/s].
-        :return: its value.
-        """
-        return self.axis(place, name).value(self.bristle[place, name])
 
     def without(self, *which: int) -> Model:
         """
@@ -138,7 +115,7 @@ def bristles(model: Model, own: Sequence[EffectUse], least: float) -> list[Effec
     known = {use.place for use in own if use.effect == BENT and not is_bristle(use)}
     found = []
     for place in [p for p, name in model.bristle if name == 'angle' and p not in known]:
-        shape = {name: model.beside(place, name) for name in BRISTLES}
+        shape = {name: axis.value(model.bristle[place, name]) for name, axis in BRISTLES.items()}
         shape['angle'] = max(least, shape['angle'])
         found.append(EffectUse(BENT, place, {'torque': 0.0, **shape}, instead=True))
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.axis import Axis
-from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.explanation import BRISTLES, Model
 from tendon_ros.identify.residuals import Residuals
 
 FloatArray = NDArray[np.float64]
@@ -41,7 +41,7 @@ class Unknowns(Residuals):
     def axes(self, model: Model) -> list[Axis]:
         """Return the axes of all unknowns, in their order."""
         own = [axis for c in model.causes for axis in c.coordinates.axes]
-        bent = [model.axis(*key) for key in model.bristle]
+        bent = [BRISTLES[name] for _, name in model.bristle]
         return [*own, *bent, *(t.axis for t in self.tolerances)]
 
     def prior(self, model: Model) -> FloatArray:
