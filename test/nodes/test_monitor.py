@@ -52,7 +52,7 @@ def test_an_effect_that_comes_live_is_a_warning_at_its_place(client, start):
     change = Parameter(name=name, value=ParameterValue(type=kind, double_value=0.15))
     request = SetParameters.Request(parameters=[change])
     client.call('/watched/simulator/set_parameters', SetParameters, request)
-    client.wait(lambda: 'pulley_3' in value(whole(), 'where'), 'no place', seconds=30.0)
+    client.wait(lambda: 'pulley_3' in value(whole(), 'where'), 'no place', seconds=90.0)
     assert whole().level == WARN
     # the first search sees the onset and may call it an event; the next one sees what lasts
     client.wait(lambda: 'friction at pulley_3' in value(whole(), 'cause 1'), 'no cause', 40.0)
