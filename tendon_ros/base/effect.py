@@ -41,6 +41,15 @@ from tendon_ros.base.parameter import Parameter
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+#: kinds of sensors, by what they read, in the order of the numbers by which the kernel knows them
+SENSED = (
+    'angle',
+    'velocity',
+    'motor_torque',
+    'contact_force',
+    'contact_torque',
+    'loop_torque',
+)
 HOOKS = ('torque', 'budget', 'elongation', 'relaxation', 'tension', 'winding')
 
 

@@ -105,7 +105,7 @@ def calibrate(
     start = _start(
         ready.problem,
         fitted,
-        [use for use in rest if is_bristle(use)],
+        [use for use in instrument.effects if use.effect == BENT],
         magnitude_of(intake.recordings, plain),
     )
     if not start.causes and not ready.problem.tolerances:
@@ -153,7 +153,7 @@ def _is_fitted(use: EffectUse) -> bool:
 def _start(
     problem: Problem,
     effects: Sequence[EffectUse],
-    bristles: Sequence[EffectUse],
+    bent: Sequence[EffectUse],
     magnitude: Magnitude,
 ) -> Model:
     """Return the model that the file is."""
@@ -164,7 +164,7 @@ def _start(
         model = model.joined(candidate, {**neutral, **use.parameters})
     known = {
         (use.place, name): axis.place(use.parameters[name])
-        for use in [*bristles, *(use for use in effects if use.effect == BENT)]
+        for use in bent
         for name, axis in BRISTLES.items()
         if use.parameters.get(name, 0.0) > 0.0
     }

@@ -21,7 +21,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.instrument import contact_place, Instrument
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 
 FloatArray = NDArray[np.float64]
 

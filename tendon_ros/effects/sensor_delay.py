@@ -12,7 +12,7 @@ Source: definition.
 
 from __future__ import annotations
 
-from tendon_ros.base.effect import Effect, Numbers
+from tendon_ros.base.effect import Effect, Numbers, SENSED
 from tendon_ros.base.parameter import Parameter
 
 
@@ -37,12 +37,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
-    sensors=(
-        'angle',
-        'velocity',
-        'motor_torque',
-        'contact_force',
-        'contact_torque',
-        'loop_torque',
-    ),
+    sensors=SENSED,
 )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.recording import channel_name
 from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 
 FloatArray = NDArray[np.float64]
 

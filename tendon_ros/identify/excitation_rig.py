@@ -10,7 +10,7 @@ from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.identify.excitation_channel import RATE
 from tendon_ros.identify.excitation_motion import Motion
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.simulation import Simulation
 from tendon_ros.model.trajectory import check_limits, Trajectory
 

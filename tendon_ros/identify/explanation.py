@@ -64,8 +64,18 @@ class Model:
         """
         cause, values = self.causes[k], self.values(k)
         if cause.effect == BENT:
-            values['dither'] = BRISTLES['dither'].value(self.bristle[cause.place, 'dither'])
+            values['dither'] = self.beside(cause.place, 'dither')
         return cause.use(values)
+
+    def beside(self, place: str, name: str) -> float:
+        """
+        Return what dry friction has beside its size.
+
+        :param place: the pulley.
+        :param name: ``angle`` [rad] or ``dither`` [rad/s].
+        :return: its value.
+        """
+        return BRISTLES[name].value(self.bristle[place, name])
 
     def without(self, *which: int) -> Model:
         """
@@ -115,7 +125,7 @@ def bristles(model: Model, own: Sequence[EffectUse], least: float) -> list[Effec
     known = {use.place for use in own if use.effect == BENT and not is_bristle(use)}
     found = []
     for place in [p for p, name in model.bristle if name == 'angle' and p not in known]:
-        shape = {name: axis.value(model.bristle[place, name]) for name, axis in BRISTLES.items()}
+        shape = {name: model.beside(place, name) for name in BRISTLES}
         shape['angle'] = max(least, shape['angle'])
         found.append(EffectUse(BENT, place, {'torque': 0.0, **shape}, instead=True))
     return found

@@ -22,7 +22,7 @@ from tendon_ros.identify.untold import as_held, as_reported
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers, place_index
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.simulation import predict
 
 FloatArray = NDArray[np.float64]

@@ -58,10 +58,9 @@ def sticking(problem: Problem, fit: Fit) -> list[BoolArray | None]:
 
 def _angle(model: Model, k: int, cause: Candidate) -> float:
     """Return the angle over which a cause's friction builds up [rad]."""
-    axis = BRISTLES['angle']
     if (cause.place, 'angle') in model.bristle:
-        return axis.value(model.bristle[cause.place, 'angle'])
-    return model.values(k).get('angle', axis.centre)
+        return model.beside(cause.place, 'angle')
+    return model.values(k).get('angle', BRISTLES['angle'].centre)
 
 
 def _travel(angle: FloatArray, period: float) -> FloatArray:

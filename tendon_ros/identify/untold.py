@@ -15,7 +15,7 @@ from scipy.ndimage import find_objects, label
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -17,7 +17,8 @@ from tendon_ros.base.errors import SimulationError
 from tendon_ros.model.cable import elongation_at
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.layout import arrays_of
-from tendon_ros.model.runner import Rows, Runner
+from tendon_ros.model.rows import Rows
+from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]

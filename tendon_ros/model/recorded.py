@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, channel_name, Recording
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 
 FloatArray = NDArray[np.float64]
 

@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
+from tendon_ros.base.effect import SENSED
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.structure import Structure
-
-#: kinds of sensors in the order of the numbers by which the kernel knows them
-SOURCES = (
-    'angle',
-    'velocity',
-    'motor_torque',
-    'contact_force',
-    'contact_torque',
-    'loop_torque',
-)
 
 
 def sensed(instrument: Instrument, structure: Structure) -> list[tuple[int, int]]:
@@ -40,5 +31,5 @@ def sensed(instrument: Instrument, structure: Structure) -> list[tuple[int, int]
             index = structure['WIDTH'] * k + structure.loop_pulley[k].index(pulley)
         else:
             index = contacts.index(sensor.of)
-        found.append((SOURCES.index(sensor.kind), index))
+        found.append((SENSED.index(sensor.kind), index))
     return found

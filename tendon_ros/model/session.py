@@ -13,7 +13,7 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_text import text_of
 from tendon_ros.model.recorded import recording_of
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.simulation import Simulation
 from tendon_ros.model.trajectory import check_limits, Trajectory
 

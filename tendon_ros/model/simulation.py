@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.layout import arrays_of
-from tendon_ros.model.runner import Rows, Runner
+from tendon_ros.model.rows import Rows
+from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]

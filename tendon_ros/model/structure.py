@@ -150,9 +150,9 @@ def structure_of(instrument: Instrument) -> Structure:
     """
     return _structure(
         instrument.pulley_names,
-        tuple((row.name, tuple(row.route)) for row in instrument.links),
-        tuple((c.name, tuple(c.route)) for c in instrument.contacts),
-        tuple((m.name, m.pulley) for m in instrument.motors),
+        tuple(tuple(row.route) for row in instrument.links),
+        tuple(tuple(c.route) for c in instrument.contacts),
+        tuple(m.pulley for m in instrument.motors),
         -(-max(len(instrument.sensors), 1) // SENSORS) * SENSORS,
     )
 
@@ -160,26 +160,26 @@ def structure_of(instrument: Instrument) -> Structure:
 @lru_cache(maxsize=64)
 def _structure(
     pulleys: tuple[str, ...],
-    links: tuple[tuple[str, tuple[str, ...]], ...],
-    contacts: tuple[tuple[str, tuple[str, ...]], ...],
-    motors: tuple[tuple[str, str], ...],
+    links: tuple[tuple[str, ...], ...],
+    contacts: tuple[tuple[str, ...], ...],
+    motors: tuple[str, ...],
     sensors: int,
 ) -> Structure:
     """Return the structure of a network by its names: fits ask for it thousands of times."""
     n = len(pulleys)
     joined = np.eye(n)
-    for _, route in (*links, *contacts):
+    for route in (*links, *contacts):
         for a in route:
             for b in route:
                 joined[pulleys.index(a), pulleys.index(b)] = 1.0
     order = tuple(int(i) for i in reverse_cuthill_mckee(csr_array(joined), symmetric_mode=True))
     place = {pulleys[i]: at for at, i in enumerate(order)}
-    loop_pulley = tuple(tuple(place[name] for name in route) for _, route in links)
-    contact_pulley = tuple(tuple(place[name] for name in route) for _, route in contacts)
+    loop_pulley = tuple(tuple(place[name] for name in route) for route in links)
+    contact_pulley = tuple(tuple(place[name] for name in route) for route in contacts)
     return Structure(
         order=order,
         loop_pulley=loop_pulley,
         contact_pulley=contact_pulley,
-        motor_pulley=tuple(place[pulley] for _, pulley in motors),
+        motor_pulley=tuple(place[pulley] for pulley in motors),
         sensors=sensors,
     )

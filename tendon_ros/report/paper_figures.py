@@ -16,7 +16,7 @@ from tendon_ros.model.paper.equation_six import EquationSix
 from tendon_ros.model.paper.force_profile import ForceProfile, rest_forces, RESTS
 from tendon_ros.model.paper.free_step import FreeStep
 from tendon_ros.model.paper.rig import degrees
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.report.style import (
     BLUE,
     FAINT,

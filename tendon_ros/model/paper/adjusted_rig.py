@@ -22,7 +22,7 @@ from tendon_ros.model.paper.cable_test import STATED_FORCES
 from tendon_ros.model.paper.force_profile import rest_forces, RESTS, SAME
 from tendon_ros.model.paper.rig import degrees, mean_between, under_control, with_effects
 from tendon_ros.model.paper.statement import about, at_least, at_most, Statement, Use
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.trajectory_profiles import paper_fig12
 
 FIGURE = 'Fig. 15'

@@ -24,7 +24,7 @@ from tendon_ros.model.paper.rig import (
     with_ideal_motors,
     with_linear_cables,
 )
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.statics import Statics
 from tendon_ros.model.trajectory_profiles import step
 

@@ -20,7 +20,7 @@ from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.paper.cable_test import WORKING_END
 from tendon_ros.model.paper.rig import mean_between, under_control, with_ideal_motors
 from tendon_ros.model.paper.statement import about, at_most, Statement, Use
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.trajectory import Trajectory
 from tendon_ros.model.trajectory_profiles import paper_fig12
 

@@ -28,7 +28,7 @@ from tendon_ros.model.paper.rig import (
     with_ideal_motors,
 )
 from tendon_ros.model.paper.statement import about, at_least, at_most, Statement, Use
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.trajectory_profiles import step
 
 #: when the motor is told to turn [s]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tendon_ros.model.effect_use import checked_use
 from tendon_ros.model.instrument import Curve, Instrument
 from tendon_ros.model.instrument_file import load_instrument
-from tendon_ros.model.runner import Rows
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict, Simulation
 from tendon_ros.model.trajectory import Trajectory
