@@ -31,6 +31,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -105,12 +106,12 @@ class Effect:
     dissipative: bool = False
     sensors: tuple[str, ...] = ()  # kinds of sensor, where the place is a sensor
 
-    @property
+    @cached_property
     def neutral(self) -> Mapping[str, float]:
         """Parameters with which the effect changes nothing."""
         return {p.name: p.typical if p.shapes_only else p.neutral for p in self.parameters}
 
-    @property
+    @cached_property
     def typical(self) -> Mapping[str, float]:
         """Parameters of a size that is worth looking for."""
         return {p.name: p.typical for p in self.parameters}

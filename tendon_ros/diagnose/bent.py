@@ -16,9 +16,9 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.rollout import modified
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.model.effect_use import in_force
+from tendon_ros.model.laws import modified
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75

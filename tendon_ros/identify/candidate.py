@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 
 from tendon_ros.base.errors import EffectError, listed
@@ -34,7 +35,7 @@ class Candidate:
     given: tuple[tuple[str, float], ...] = ()
     magnitude: Magnitude = TYPICAL
 
-    @property
+    @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The effect's parameters, seen from what is given, but for what only a guess opens."""
         known = dict(self.given)
@@ -64,7 +65,7 @@ class Candidate:
         """Whether its sizes can only grow from their neutral values."""
         return all(p.low >= p.neutral for p in self.parameters if not p.is_shape)
 
-    @property
+    @cached_property
     def coordinates(self) -> Coordinates:
         """The unknowns of a fit of it."""
         return Coordinates(self.parameters)

@@ -19,13 +19,13 @@ from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
 from tendon_ros.identify.excitation_rig import ACCURACY, performed, touching
-from tendon_ros.identify.rollout import modified
 from tendon_ros.identify.segment import Segment, SETTLING
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
+from tendon_ros.model.laws import modified
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict

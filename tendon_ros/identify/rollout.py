@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
-from tendon_ros.effects import find
 from tendon_ros.identify.segment import Segment
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import as_held, as_reported
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.numbers import Numbers, place_index
+from tendon_ros.model.layout import Layout
+from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
-from tendon_ros.model.simulation import predict
+from tendon_ros.model.simulation import follow
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -72,6 +72,15 @@ class Rollouts:
                 ),
             )
             for segment in self.segments
+        )
+        self._layout = tuple(
+            Layout(
+                base,
+                {name: row for row, name in enumerate(segment.prescribed)},
+                {n: row for row, n in enumerate(segment.pushed, start=len(segment.prescribed))},
+                tolerance=self.tolerance,
+            )
+            for base, segment in zip(self._base, self.segments, strict=True)
         )
         largest = 8 * max([1, *(len(s.measured) * len(s.time) for s in self.segments)])
         self._one = lru_cache(max(1, int(REMEMBERED / largest)))(self._computed)
@@ -178,19 +187,10 @@ class Rollouts:
         """Return what the model does along a segment, and its numbers with all effects."""
         segment = self.segments[n]
         base = self._base[n]
-        effects = in_force(base.effects, uses)
-        numbers = modified(base, effects)
-        rows = predict(
-            base,
-            true_motion(base, numbers, segment),
-            segment.prescribed,
-            len(segment.time) - 1,
-            effects=effects,
-            pushed=segment.pushed,
-            tolerance=self.tolerance,
-            pose=segment.pose,
-        )
-        return rows, numbers
+        arrays = self._layout[n].arrays(in_force(base.effects, uses))
+        motion = true_motion(base, arrays.numbers, segment)
+        rows = follow(base, arrays, motion, len(segment.time) - 1, pose=segment.pose)
+        return rows, arrays.numbers
 
     def _computed(self, n: int, uses: tuple[EffectUse, ...]) -> FloatArray:
         """Return all channels of a segment; nobody may write into what is remembered."""
@@ -227,23 +227,6 @@ def loosest(
     # infinite where the file's own model diverges
     noticed = float(np.max([np.sqrt(np.mean(c**2)) for c in changes]))
     return ROUGH if noticed < UNNOTICED else TOLERANCE
-
-
-def modified(instrument: Instrument, effects: Sequence[EffectUse]) -> Numbers:
-    """
-    Return the numbers of an instrument after effects have modified them.
-
-    :param instrument: the network.
-    :param effects: those in force.
-    :return: the numbers.
-    """
-    numbers = Numbers(instrument)
-    for use in effects:
-        effect = find(use.effect)
-        if effect.modify is not None:
-            numbers.kind, index = place_index(instrument, use.place)
-            effect.modify(numbers, index, **{**effect.neutral, **use.parameters})
-    return numbers
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:

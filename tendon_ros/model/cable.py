@@ -67,6 +67,7 @@ def tension_at(curve: Curve, elongation: FloatArray | float) -> FloatArray:
     return _evaluated(start, rate, cubic, np.asarray(elongation, dtype=np.float64))
 
 
+@lru_cache(maxsize=1024)
 def elongation_at(curve: Curve, tension: float) -> float:
     """
     Return the elongation at which a cable has a tension.

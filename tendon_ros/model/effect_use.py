@@ -78,5 +78,5 @@ def in_force(own: Sequence[EffectUse], uses: Sequence[EffectUse]) -> tuple[Effec
             changed = {**found[old].parameters, **use.parameters}
             found[old] = replace(found[old], parameters=changed)
         else:
-            found.append(replace(use, instead=False))
+            found.append(replace(use, instead=False) if use.instead else use)
     return tuple(found)

@@ -54,12 +54,14 @@ class Engine:
 
     def array(self, values: Any) -> Any:
         """Return an array of floats or of ints in the form that the kernel works on."""
-        flat = np.ascontiguousarray(values)
-        if flat.dtype.kind == 'f':
-            flat = flat.astype(np.float64)
-        else:
-            flat = flat.astype(np.int64)
-        return flat.copy() if self.compiled else flat.tolist()
+        given = np.asarray(values)
+        kind = np.float64 if given.dtype.kind == 'f' else np.int64
+        own = np.array(given, dtype=kind, order='C')
+        return own if self.compiled else own.tolist()
+
+    def zeros(self, count: int) -> Any:
+        """Return so many zeros in the form that the kernel works on."""
+        return np.zeros(count) if self.compiled else [0.0] * count
 
 
 @lru_cache(maxsize=32)

@@ -15,7 +15,7 @@ import textwrap
 
 from tendon_ros.base.effect import Effect
 from tendon_ros.effects import catalogue
-from tendon_ros.model.layout import law_numbers
+from tendon_ros.model.laws import law_numbers
 from tendon_ros.model.structure import Structure
 
 #: the kernel's files, in the order in which they are joined; they are read, never imported

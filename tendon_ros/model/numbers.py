@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,6 +56,12 @@ class Numbers:
         for k, row in enumerate(one.loops):
             for name, sign in row.torque_sign.items():
                 self.values['arm'][k, one.index(name)] *= sign
+
+    def copy(self) -> Numbers:
+        """Return the same numbers, which may be modified on their own."""
+        other = copy(self)
+        other.values = {name: value.copy() for name, value in self.values.items()}
+        return other
 
     def __getitem__(self, name: str) -> FloatArray:
         return self.values[name]

@@ -31,7 +31,7 @@ class Runner:
         self.instrument = instrument
         self.structure = arrays.structure
         self.engine: Engine = engine_for(arrays.structure, engine)
-        self._work = self.engine.array(np.zeros(arrays.structure.length('w')))
+        self._work = self.engine.zeros(arrays.structure.length('w'))
         self.rest({})
         self.load(arrays)
 
@@ -121,7 +121,7 @@ class Runner:
         at = self.structure
         last = self.tick + ticks - (0 if smoothly else 1)
         count = last // every - (self.tick - 1) // every
-        rows = self.engine.array(np.zeros(count * self.width))
+        rows = self.engine.zeros(count * self.width)
         self._carried[at['ROOM']] = float(count)
         self._carried[at['NOISY']] = 0.0 if noise is None else 1.0
         status = self.engine.module.rollout(
@@ -134,7 +134,7 @@ class Runner:
             self._state,
             self.engine.array(np.ravel(setpoints)),
             ticks,
-            self.engine.array(np.zeros(0) if noise is None else np.ravel(noise)),
+            self.engine.zeros(0) if noise is None else self.engine.array(np.ravel(noise)),
             rows,
             every,
             int(smoothly),
@@ -145,7 +145,7 @@ class Runner:
                 'gains, damping and inertias, or ask for a smaller tolerance'
             )
         written = int(self._carried[at['ROW']])
-        table = np.array(rows, dtype=np.float64).reshape(-1, self.width)[:written]
+        table = np.asarray(rows, dtype=np.float64).reshape(-1, self.width)[:written]
         return Rows(self.instrument, at, table)
 
     def glide(self, end: float, signals: Signals) -> Rows:
@@ -158,7 +158,7 @@ class Runner:
         :raises SimulationError: where it diverges.
         """
         at = self.structure
-        row = self.engine.array(np.zeros(self.width))
+        row = self.engine.zeros(self.width)
         status = self.engine.module.glide(
             self._m,
             self._d,

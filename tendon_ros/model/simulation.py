@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import arrays_of
+from tendon_ros.model.layout import Arrays, arrays_of
 from tendon_ros.model.rows import Rows
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
@@ -228,6 +228,31 @@ def predict(
         pushed={name: len(prescribed) + row for row, name in enumerate(pushed)},
         tolerance=tolerance,
     )
+    return follow(instrument, arrays, motion, ticks, every=every, engine=engine, pose=pose)
+
+
+def follow(
+    instrument: Instrument,
+    arrays: Arrays,
+    motion: Signals,
+    ticks: int,
+    *,
+    every: int = 1,
+    engine: str = 'auto',
+    pose: Mapping[str, float] | None = None,
+) -> Rows:
+    """
+    Drive a model whose arrays are there already, as :func:`predict` does.
+
+    :param instrument: the network.
+    :param arrays: its numbers.
+    :param motion: signals, in the rows that the arrays know.
+    :param ticks: periods to advance.
+    :param every: record every so many ticks.
+    :param engine: as for :class:`Simulation`.
+    :param pose: as for :func:`predict`.
+    :return: rows.
+    """
     runner = Runner(instrument, arrays, engine)
     runner.rest(pose or {})
     return runner.advance(np.zeros(0), ticks, every=every, smoothly=True, signals=motion)

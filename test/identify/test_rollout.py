@@ -7,10 +7,11 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.rollout import modified, true_motion
+from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
-from tendon_ros.model.simulation import predict
+from tendon_ros.model.laws import modified
+from tendon_ros.model.simulation import follow
 
 INJECTED = {
     'friction': ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
@@ -54,10 +55,10 @@ def test_what_was_predicted_a_moment_ago_is_not_computed_again(bench, measured_o
     computed = []
 
     def counted(instrument, *args, **more):
-        computed.append(more['effects'])
-        return predict(instrument, *args, **more)
+        computed.append(args)
+        return follow(instrument, *args, **more)
 
-    monkeypatch.setattr('tendon_ros.identify.rollout.predict', counted)
+    monkeypatch.setattr('tendon_ros.identify.rollout.follow', counted)
     weak = EffectUse('coulomb_friction', 'pulley_3', {'torque': 0.05})
     strong = EffectUse('coulomb_friction', 'pulley_3', {'torque': 0.06})
     before = rollouts.predicted([[weak], [weak]])
