@@ -16,6 +16,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.identify.descent import Descent, follow, Place, TRIES, unpressed
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.slopes import Slopes
 
@@ -60,7 +61,7 @@ class Problem(Slopes):
         """
         x = self.pack(fit.model)
         bounds = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2)
-        return _free(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
+        return unpressed(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
 
     def centred(self, fit: Fit) -> Fit:
         """
@@ -147,18 +148,19 @@ class Problem(Slopes):
         """Return the fit that Levenberg and Marquardt's method comes to."""
         axes = self.axes(model)
         bounds = np.array([axis.ends for axis in axes]).reshape(-1, 2)
-        prior = self.prior(model)
         own = len(axes) - len(self.tolerances)
         still = self.still(model)
+        descent = Descent(
+            lambda x: self.left(self.unpack(model, x)), self.prior(model), bounds, still
+        )
         x = self.pack(model)
         x[still] = 0.0
-        x = np.clip(x, bounds[:, 0], bounds[:, 1])
-        x, left = self._computed(model, x, own)
-        cost = float(left @ left + prior @ x**2)
-        if not math.isfinite(cost):  # the model diverges: nothing to fit from here
-            return Fit(self.unpack(model, x), left, np.zeros((len(left), len(axes))), math.inf)
+        place = _computed(descent, np.clip(x, bounds[:, 0], bounds[:, 1]), own)
+        if not math.isfinite(place.cost):  # the model diverges: nothing to fit from here
+            nothing = np.zeros((len(place.left), len(axes)))
+            return Fit(self.unpack(model, place.x), place.left, nothing, math.inf)
         labels = self.labels(model)
-        slope = np.zeros((len(left), len(axes)))
+        slope = np.zeros((len(place.left), len(axes)))
         fresh = []
         once = []
         guessed = []
@@ -171,60 +173,32 @@ class Problem(Slopes):
                 fresh.append(j)
             elif not still[j]:
                 once.append(j)
-        slope[:, once] = self.slope(self.unpack(model, x), left, once)
+        slope[:, once] = self.slope(self.unpack(model, place.x), place.left, once)
         slope[:, still] = 0.0
-        damping = 1e-3
-        taken = x.copy()
+        taken = place.x
         far: list[int] = []  # guesses that have left where their derivatives were taken
         looks = LOOKS if accuracy > CAREFUL else rounds
+        # the valleys of guesses are long and bent: several steps at once lead astray there
+        tried = TRIES[:1] if guessed else TRIES
         anew = fresh
         for _ in range(rounds):
-            slope[:, anew] = self.slope(self.unpack(model, x), left, anew)
+            slope[:, anew] = self.slope(self.unpack(model, place.x), place.left, anew)
             anew = fresh
-            normal = slope.T @ slope + np.diag(prior)
-            gradient = slope.T @ left + prior * x
-            before = cost
-            for _ in range(6):
-                scale = np.diag(np.diag(normal)) + 1e-9 * np.eye(len(x))
-                # unknowns pressed against a bound stay there
-                free = ~still & _free(x, bounds, gradient)
-                step = np.zeros(len(x))
-                step[free] = np.linalg.solve(
-                    (normal + damping * scale)[np.ix_(free, free)], -gradient[free]
-                )
-                trial = np.clip(x + step, bounds[:, 0], bounds[:, 1])
-                now = self.left(self.unpack(model, trial))
-                new = float(now @ now + prior @ trial**2)
-                if np.isfinite(new) and new < cost:
-                    far = [j for j in guessed if abs(trial[j] - taken[j]) > FAR]
-                    _follow(slope, far, trial - x, now - left)
-                    x, left, cost = trial, now, new
-                    damping = max(damping * 0.2, 1e-7)
+            before = place.cost
+            for tries in tried:
+                last, place = place, descent.step(place, slope, tries, accuracy)
+                far = [j for j in guessed if abs(place.x[j] - taken[j]) > FAR]
+                follow(slope, far if guessed else fresh, last, place)
+                if last.cost - place.cost <= accuracy * last.cost:
                     break
-                damping *= 8.0
-            if before - cost <= accuracy * before:
+            if before - place.cost <= accuracy * before:
                 if not far or not looks:
                     break
                 # an end is one only by derivatives that were taken near it
                 looks -= 1
-                taken[far] = x[far]
+                taken = np.where(np.isin(np.arange(len(x)), far), place.x, taken)
                 anew, far = [*fresh, *far], []
-        return Fit(self.unpack(model, x), left, slope, cost)
-
-    def _computed(self, model: Model, x: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:
-        """
-        Return unknowns from which the model can be computed, and what they leave.
-
-        Numbers of the file that have gone far beside a cause may leave a model that diverges
-        without it: they go back towards the file.
-        """
-        trial = x.copy()
-        for part in BACK:
-            trial[own:] = part * x[own:]
-            left = self.left(self.unpack(model, trial))
-            if math.isfinite(float(left @ left)):
-                break
-        return trial, left
+        return Fit(self.unpack(model, place.x), place.left, slope, place.cost)
 
     def slopes(self, fit: Fit) -> dict[str, FloatArray]:
         """
@@ -258,17 +232,15 @@ class Problem(Slopes):
         return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
 
 
-def _follow(slope: FloatArray, columns: list[int], step: FloatArray, change: FloatArray) -> None:
-    """Turn derivatives so that they tell what a step has changed, by Broyden's rule."""
-    part = step[columns]
-    square = float(part @ part)
-    if square > 0.0:
-        slope[:, columns] += np.outer((change - slope @ step) / square, part)
+def _computed(descent: Descent, x: FloatArray, own: int) -> Place:
+    """
+    Return a place at which the model can be computed.
 
-
-def _free(x: FloatArray, bounds: FloatArray, gradient: FloatArray) -> NDArray[np.bool_]:
-    """Return which unknowns are not pressed against a bound: those that are stay there."""
-    held: NDArray[np.bool_] = ((x <= bounds[:, 0]) & (gradient > 0.0)) | (
-        (x >= bounds[:, 1]) & (gradient < 0.0)
-    )
-    return ~held
+    Numbers of the file that have gone far beside a cause may leave a model that diverges without
+    it: they go back towards the file.
+    """
+    for part in BACK:
+        place = descent.at(np.concatenate([x[:own], part * x[own:]]))
+        if math.isfinite(place.cost):
+            break
+    return place

@@ -185,7 +185,7 @@ class Layout:
         d[at['PUSHED']] = len(pushed)
 
     def _scattered(self) -> list[tuple[str, IntArray, IntArray]]:
-        """Return the places in ``m`` of all numbers that effects may change, and what goes there."""
+        """Return where in ``m`` each number stands that effects may change, and what of it."""
         at = self.structure
         order = np.array(at.order)
         found = [
