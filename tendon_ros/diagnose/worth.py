@@ -48,6 +48,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     :param after: with it.
     :return: whether it explains more than noise and the form of the other laws can.
     """
+    free = ~_held(problem, before, after)
     after = moving(problem, before, after)
     gain, in_one = gains(problem, before, after)
     new = set(after.model.causes) - set(before.model.causes)
@@ -64,9 +65,9 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         return True
     # what the form of a law leaves has no other cause that would explain most of it
     most = (
-        (gain > TAKES * problem.structured(before.left) and not _completes(before, new))
-        or _most_of_one(problem, start, before, after, form)
-        or _apart(before, after, profile)
+        (gain > TAKES * problem.structured(free * before.left) and not _completes(before, new))
+        or _most_of_one(problem, start, before, after, form, free)
+        or _apart(before, after, (profile < LEAST_IN_ONE) & free)
     )
     return most and not _bends(problem, after, new)
 
@@ -109,43 +110,51 @@ def stands_out(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     :return: whether, what it merely holds left out.
     """
     form = form_power(problem, start, before)
-    return _most_of_one(problem, start, before, moving(problem, before, after), form)
+    free = ~_held(problem, before, after)
+    return _most_of_one(problem, start, before, moving(problem, before, after), form, free)
 
 
-def _most_of_one(problem: Problem, start: Fit, before: Fit, after: Fit, form: float) -> bool:
-    """Return whether a cause explains most of a channel, more than other laws may leave there."""
-    first, then, last = (by_channel(problem, fit) for fit in (start, before, after))
+def _most_of_one(
+    problem: Problem, start: Fit, before: Fit, after: Fit, form: float, free: BoolArray
+) -> bool:
+    """
+    Return whether a cause explains most of a channel, more than other laws may leave there.
+
+    Where friction only holds (not ``free``) it could explain anything, and nothing is asked.
+    """
+    first, then, last = (by_channel(problem, free * fit.left) for fit in (start, before, after))
+    noise = by_channel(problem, free.astype(np.float64))
     explained = (start.cost - before.cost) / max(len(start.left), 1)
     wrong = form / max(explained, 1e-12)
     return any(
-        then[c] - last[c] > max(wrong * (first[c] - then[c]), HALF * (then[c] - 1.0), LEAST_IN_ONE)
+        then[c] - last[c]
+        > max(wrong * (first[c] - then[c]), HALF * (then[c] - noise[c]), LEAST_IN_ONE)
         for c in first
     )
 
 
-def _apart(before: Fit, after: Fit, profile: FloatArray) -> bool:
+def _apart(before: Fit, after: Fit, quiet: BoolArray) -> bool:
     """
     Return whether a cause explains most of what is left where the other laws hardly act.
 
     A limit that cuts off some torques says nothing of all others.
     """
-    quiet = profile < LEAST_IN_ONE
     if np.mean(quiet) < ENOUGH:
         return False
     then, last = (float(np.mean(fit.left[quiet] ** 2)) for fit in (before, after))
     return then - last > max(LEAST_IN_ONE, HALF * (then - 1.0))
 
 
-def by_channel(problem: Problem, fit: Fit) -> dict[str, float]:
+def by_channel(problem: Problem, left: FloatArray) -> dict[str, float]:
     """
-    Return what a fit leaves of each channel.
+    Return what is left of each channel.
 
     :param problem: the data.
-    :param fit: the fit.
-    :return: mean squares in noise deviations, all recordings together.
+    :param left: what is left, in noise deviations, shape (samples,).
+    :return: mean squares, all recordings together.
     """
     return {
-        name: float(np.sum(fit.left[samples] ** 2)) / max(int(samples.sum()), 1)
+        name: float(np.sum(left[samples] ** 2)) / max(int(samples.sum()), 1)
         for name, samples in problem.channels().items()
     }
 
@@ -186,7 +195,7 @@ def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
     :param after: the better one.
     :return: over all samples, and in the channel where it falls most.
     """
-    then, last = by_channel(problem, before), by_channel(problem, after)
+    then, last = by_channel(problem, before.left), by_channel(problem, after.left)
     gain = (before.cost - after.cost) / max(len(before.left), 1)
     return gain, max((then[c] - last[c] for c in then), default=0.0)
 

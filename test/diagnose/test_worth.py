@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.diagnose import worth
 from tendon_ros.diagnose.form import form_power, form_profile, tie
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.worth import gains, moving, worthwhile
+from tendon_ros.diagnose.worth import gains, moving, stands_out, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.sticking import sticking
 from tendon_ros.model.instrument import EffectUse
@@ -44,6 +44,22 @@ def test_friction_that_holds_is_not_looked_for(rubbing):
     # of another cause all counts
     pushed = rubbing.fitted(rubbing.empty.joined(BIAS, {'torque': 0.01}))
     assert moving(rubbing, before, pushed) is pushed
+
+
+@pytest.mark.parametrize(('slides', 'told'), [(1.0, True), (2.9, False)])
+def test_what_friction_holds_is_no_part_that_it_would_have_to_explain(rubbing, slides, told):
+    def leaving(fit, held, else_):
+        left = np.where(still, held, else_)
+        return replace(fit, left=left, cost=float(left @ left))
+
+    [segment] = rubbing.rollouts.segments
+    still = rubbing.sampled([segment.still[0]])
+    bare = rubbing.fitted(rubbing.empty, rounds=0)
+    rubs = rubbing.fitted(rubbing.empty.joined(RUBS, {'torque': 0.1}), rounds=0)
+    start = leaving(bare, 30.0, 30.0)
+    # most of what is left is torque of a motor at rest, which any friction could hold
+    before, after = leaving(bare, 10.0, 3.0), leaving(rubs, 0.0, slides)
+    assert stands_out(rubbing, start, before, after) is told
 
 
 CUT = Candidate('torque_saturation', 'motor_body')
