@@ -254,7 +254,7 @@ def test_a_small_torque_is_met_at_the_edge_of_a_play():
         sensors=tuple(replace(s, misfit=8e-3 * (s.kind == 'loop_torque')) for s in tool.sensors),
     )
     motion = {'duration': '6 s', 'amplitude': '40 deg'}
-    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=500.0)
+    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=250.0)
     channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
     assert 0.01 < run['load_cell/torque'].value.max() < 0.02
     found = estimate_recording(run, build(rig, 'static_balance', channels=channels))
@@ -270,7 +270,7 @@ def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
         tool, effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),)
     )
     motion = {'duration': '6 s', 'amplitude': '70 deg'}
-    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=500.0)
+    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=250.0)
     channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
     assert run['load_cell/torque'].value.max() > 0.05
 
