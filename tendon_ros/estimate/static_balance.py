@@ -17,6 +17,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgels
 
 from tendon_ros.base.errors import InstrumentError, listed, RecordingError
 from tendon_ros.estimate.channels import (
@@ -149,6 +150,7 @@ class StaticBalanceObserver(Observer):
                 self._on_loops[row, k] = -self._routing[k, one.index(sensor.of)]
                 self._reading_sign[n] = -1.0
         unknowns = len(self._free) + 1
+        self._known = np.eye(unknowns) / WANDER
         if count < unknowns:
             raise InstrumentError(
                 f'{one.name}: {unknowns} unknowns (inner angles and the force) but only '
@@ -243,9 +245,9 @@ class StaticBalanceObserver(Observer):
         start = begun[self._free]
         cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
         for _ in range(TRIES):
-            orthogonal, upper = np.linalg.qr(rows)
-            move = np.linalg.solve(upper, -(orthogonal.T @ residual))
-            promised = float(np.sum(np.square(upper @ move)))
+            _, found, _ = dgels(rows, -residual)  # least squares; priors make every column count
+            move = found[: rows.shape[1]]
+            promised = float(np.sum(np.square(rows @ move)))
             if np.abs(move).max() < CLOSE or promised < PROMISE:
                 break
             # the curve's knee and slack make a full step overshoot: shorten it until it helps
@@ -273,9 +275,9 @@ class StaticBalanceObserver(Observer):
         prior = (angle[self._free] - start) / WANDER
         expected, spread = self._expected
         residual = np.concatenate([residual, prior, [(force - expected) / spread]])
-        known = [1.0 / WANDER] * len(self._free) + [1.0 / spread]
-        slope = np.vstack([slope, np.diag(known)])
-        return float(residual @ residual), residual, slope, by_fixed
+        rows = np.concatenate([slope, self._known])
+        rows[-1, -1] = 1.0 / spread
+        return float(residual @ residual), residual, rows, by_fixed
 
     def _equations(
         self, balance: Balance, force: float, measurement: Measurement

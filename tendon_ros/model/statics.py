@@ -75,15 +75,21 @@ class Linearisation:
         table = np.array(entries, dtype=np.intp).reshape(-1, 3)
         self._shape = (m, n)
         self._cell = (table[:, 0], table[:, 1])
-        self._entry = table[:, 2]
         own = np.argsort(order)
-        self._places = {
+        places = {
             name: at[name] + own for name in ('J_ANGLE', 'J_SPEED', 'TORQUE', 'SIDE', 'BUDGET')
         }
-        self._places |= {name: at[name] + self._entry for name in ('J_RADIUS', 'J_ARM', 'J_GRIP')}
-        self._places |= {
+        places |= {name: at[name] + table[:, 2] for name in ('J_RADIUS', 'J_ARM', 'J_GRIP')}
+        places |= {
             name: at[name] + np.arange(m)
             for name in ('J_LOOP', 'J_LOOP_RATE', 'J_TOTAL', 'TENSION')
+        }
+        # all are taken at once: estimators do so several times a sample
+        self._places = np.concatenate(list(places.values()))
+        ends = np.cumsum([len(place) for place in places.values()]).tolist()
+        self._parts = {
+            name: slice(end - len(place), end)
+            for (name, place), end in zip(places.items(), ends, strict=True)
         }
 
     def read(self, runner: Runner) -> Balance:
@@ -94,7 +100,8 @@ class Linearisation:
         :return: the balance.
         """
         work = np.asarray(runner.work, dtype=np.float64)
-        part = {name: work[place] for name, place in self._places.items()}
+        taken = work[self._places]
+        part = {name: taken[own] for name, own in self._parts.items()}
         radius, arm, grip = np.zeros((3, *self._shape))
         radius[self._cell] = part['J_RADIUS']
         arm[self._cell] = part['J_ARM']
