@@ -45,7 +45,9 @@ def scored(recording: Recording, instrument: Instrument) -> Score | None:
             measured = recording[truth].at(estimate.time)
             error = estimate.value - measured
             noise = [deviation(s) for s in instrument.sensors if s.channel == truth and s.noise]
-            sigma = np.hypot(recording[f'{guess}_std'].value, noise[0] if noise else 0.0)
+            # of what was recorded live, each channel may lack other messages
+            stated = recording[f'{guess}_std'].at(estimate.time)
+            sigma = np.hypot(stated, noise[0] if noise else 0.0)
             return Score(
                 quantity,
                 estimate.unit,

@@ -44,8 +44,10 @@ def estimate_figure(recording: Recording) -> Figure:
     estimate = recording[f'estimate/{quantity}']
     sigma = recording[f'estimate/{quantity}_std']
     step = max(1, len(estimate.time) // MOST_POINTS)
-    time, value = estimate.time[::step] - recording.start, estimate.value[::step]
-    band = 2.0 * sigma.value[::step]
+    # of what is recorded live, each channel may lack other messages
+    stamps, value = estimate.time[::step], estimate.value[::step]
+    time = stamps - recording.start
+    band = 2.0 * sigma.at(stamps)
     known = f'load_cell/{quantity}' in recording
     figure, axes = panels(*((2.6, 1.6, 2.2) if known else (2.6, 2.2)), share_x=True)
     top, low = axes[0], axes[-1]
@@ -56,7 +58,7 @@ def estimate_figure(recording: Recording) -> Figure:
     ends = [(float(value[-1]), 'estimate', BLUE)]
     top.margins(x=0)
     if known:
-        cell = recording[f'load_cell/{quantity}'].at(estimate.time[::step])
+        cell = recording[f'load_cell/{quantity}'].at(stamps)
         top.plot(time, cell, color=ORANGE, linewidth=1.2)
         ends.append((float(cell[-1]), 'load cell', ORANGE))
         axes[1].fill_between(time, -band, band, color=BLUE, alpha=0.18, linewidth=0)
@@ -66,13 +68,13 @@ def estimate_figure(recording: Recording) -> Figure:
     names = [n for n in recording.channels if n.startswith('estimate/pulley_')]
     angles = []
     for colour, name in zip(_SOME, sorted(names), strict=False):
-        angle = np.rad2deg(recording[name].value[::step])
+        angle = np.rad2deg(recording[name].at(stamps))
         low.plot(time, angle, color=colour)
         pulley = name.split('/')[1]
         angles.append((float(angle[-1]), pulley.replace('_', ' '), colour))
         true = name.replace('estimate/', 'pulley/')
         if true in recording:
-            measured = np.rad2deg(recording[true].at(estimate.time[::step]))
+            measured = np.rad2deg(recording[true].at(stamps))
             low.plot(time, measured, color='black', linewidth=0.8, linestyle=(0, (2, 2)))
     low.set_title('Inner pulleys; dashed: measured, where they are')
     low.set_ylabel('angle [deg]')
