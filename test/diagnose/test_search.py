@@ -69,4 +69,5 @@ def test_the_same_effect_elsewhere_is_no_worse_than_where_the_cause_would_lead(b
     rivals = {rival.candidate: rival.fit for rival in found.rivals[0]}
     for other in set(slips) - {cause}:
         fit = problem.fitted(problem.empty.joined(other, values), rounds=20)
-        assert rivals[other].cost <= 1.001 * fit.cost
+        # in time bins make the misfit a staircase, on which fits end a hundredth apart
+        assert rivals[other].cost <= 1.02 * fit.cost
