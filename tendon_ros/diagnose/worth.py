@@ -226,15 +226,10 @@ def _held(problem: Problem, before: Fit, after: Fit) -> BoolArray:
         for c in set(after.model.causes) - set(before.model.causes)
         if find(c.effect).hook == 'budget'
     }
-    instrument = problem.rollouts.instrument
-    rows = []
-    for segment in problem.rollouts.segments:
-        row = np.zeros((len(segment.measured), len(segment.time)), dtype=np.bool_)
-        for n, j, still in segment.at_rest(instrument):
-            if f'pulley_{instrument.motors[j].pulley}' in rubs:
-                row[n] = still
-        rows.append(row)
-    return problem.sampled(rows)
+    held = np.zeros(len(before.left), dtype=np.bool_)
+    for place in rubs & set(problem.resting):
+        held |= problem.resting[place]
+    return held
 
 
 def needed(problem: Problem, start: Fit, state: Fit) -> float:

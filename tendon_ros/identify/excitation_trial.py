@@ -25,10 +25,9 @@ from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.laws import modified
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
-from tendon_ros.model.simulation import predict
+from tendon_ros.model.simulation import along, follow
 
 FloatArray = NDArray[np.float64]
 Explanation = tuple[Candidate, Values]
@@ -201,20 +200,15 @@ class Trial:
 
     def _predicted(self, uses: Sequence[EffectUse], drive: _Drive | None = None) -> FloatArray:
         """Return what the channels say when the model is driven along the motion."""
-        along = drive or self._drive
-        instrument = replace(self._base, control_period=along.segment.period)
+        drive = drive or self._drive
+        instrument = replace(self._base, control_period=drive.segment.period)
         effects = in_force(self._base.effects, uses)
-        numbers = modified(instrument, effects)
-        rows = predict(
-            instrument,
-            true_motion(instrument, numbers, along.segment),
-            along.segment.prescribed,
-            len(along.segment.time) - 1,
-            effects=effects,
-            tolerance=ACCURACY,
-        )
+        segment = drive.segment
+        arrays = along(instrument, segment.prescribed, tolerance=ACCURACY).arrays(effects)
+        motion = true_motion(instrument, arrays.numbers, segment)
+        rows = follow(instrument, arrays, motion, len(segment.time) - 1)
         found = np.array([s.reading(rows) for s in self._sensed])
-        _add_cut_off(found, self._sensed, instrument, numbers, along.reported)
+        _add_cut_off(found, self._sensed, instrument, arrays.numbers, drive.reported)
         return found[:, self._used]
 
 

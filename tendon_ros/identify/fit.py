@@ -60,8 +60,9 @@ class Problem(Slopes):
         :return: shape (unknowns,).
         """
         x = self.pack(fit.model)
-        bounds = np.array([axis.ends for axis in self.axes(fit.model)]).reshape(-1, 2)
-        return unpressed(x, bounds, fit.slope.T @ fit.left + self.prior(fit.model) * x)
+        return unpressed(
+            x, self._bounds(fit.model), fit.slope.T @ fit.left + self.prior(fit.model) * x
+        )
 
     def centred(self, fit: Fit) -> Fit:
         """
@@ -112,7 +113,7 @@ class Problem(Slopes):
         """
         x = self.pack(fit.model)
         axes = self.axes(fit.model)
-        prior = self.prior(fit.model)
+        descent = self._descent(fit.model)
         least = (1.0 - 1e-3) * fit.cost
         better: FloatArray | None = None
         at = 0
@@ -131,8 +132,7 @@ class Problem(Slopes):
                     low, high = axes[j].low, axes[j].high
                     moved = axes[j].value(x[j]) + sign * shift
                     trial[j] = axes[j].place(min(max(moved, low), high))
-                left = self.left(self.unpack(fit.model, trial))
-                cost = float(left @ left + prior @ trial**2)
+                cost = descent.at(trial).cost
                 if cost < least:
                     better, least = trial, cost
             x = x if better is None else better
@@ -147,15 +147,12 @@ class Problem(Slopes):
     ) -> Fit:
         """Return the fit that Levenberg and Marquardt's method comes to."""
         axes = self.axes(model)
-        bounds = np.array([axis.ends for axis in axes]).reshape(-1, 2)
         own = len(axes) - len(self.tolerances)
         still = self.still(model)
-        descent = Descent(
-            lambda x: self.left(self.unpack(model, x)), self.prior(model), bounds, still
-        )
+        descent = self._descent(model)
         x = self.pack(model)
         x[still] = 0.0
-        place = _computed(descent, np.clip(x, bounds[:, 0], bounds[:, 1]), own)
+        place = _computed(descent, np.clip(x, *self._bounds(model).T), own)
         if not math.isfinite(place.cost):  # the model diverges: nothing to fit from here
             nothing = np.zeros((len(place.left), len(axes)))
             return Fit(self.unpack(model, place.x), place.left, nothing, math.inf)
@@ -199,6 +196,18 @@ class Problem(Slopes):
                 taken = np.where(np.isin(np.arange(len(x)), far), place.x, taken)
                 anew, far = [*fresh, *far], []
         return Fit(self.unpack(model, place.x), place.left, slope, place.cost)
+
+    def _bounds(self, model: Model) -> FloatArray:
+        """Return between which places the unknowns of a model lie, shape (unknowns, 2)."""
+        return np.array([axis.ends for axis in self.axes(model)]).reshape(-1, 2)
+
+    def _descent(self, model: Model) -> Descent:
+        return Descent(
+            lambda x: self.left(self.unpack(model, x)),
+            self.prior(model),
+            self._bounds(model),
+            self.still(model),
+        )
 
     def slopes(self, fit: Fit) -> dict[str, FloatArray]:
         """

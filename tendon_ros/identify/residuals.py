@@ -7,6 +7,7 @@ Channels and recordings lie one after the other in one vector, so that fits need
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,6 +152,19 @@ class Residuals:
             for row, mask in zip(rows, self._masks, strict=True)
         ]
         return np.concatenate(parts)
+
+    @cached_property
+    def resting(self) -> Mapping[str, NDArray[np.bool_]]:
+        """By pulley place which samples are torques of its motor while it rests."""
+        motors = self.rollouts.instrument.motors
+        rows = {
+            f'pulley_{motor.pulley}': [np.zeros(m.shape, dtype=np.bool_) for m in self._masks]
+            for motor in motors
+        }
+        for n, segment in enumerate(self._segments):
+            for row, j, still in segment.at_rest(self.rollouts.instrument):
+                rows[f'pulley_{motors[j].pulley}'][n][row] = still
+        return {place: self.sampled(of_place) for place, of_place in rows.items()}
 
     def clusters(self, length: float) -> NDArray[np.int64]:
         """

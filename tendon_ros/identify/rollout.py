@@ -20,10 +20,9 @@ from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import as_held, as_reported
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import Layout
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
-from tendon_ros.model.simulation import follow
+from tendon_ros.model.simulation import along, follow
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -74,12 +73,7 @@ class Rollouts:
             for segment in self.segments
         )
         self._layout = tuple(
-            Layout(
-                base,
-                {name: row for row, name in enumerate(segment.prescribed)},
-                {n: row for row, n in enumerate(segment.pushed, start=len(segment.prescribed))},
-                tolerance=self.tolerance,
-            )
+            along(base, segment.prescribed, segment.pushed, self.tolerance)
             for base, segment in zip(self._base, self.segments, strict=True)
         )
         largest = 8 * max([1, *(len(s.measured) * len(s.time) for s in self.segments)])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.layout import Arrays, arrays_of
+from tendon_ros.model.layout import Arrays, arrays_of, Layout
 from tendon_ros.model.rows import Rows
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
@@ -221,14 +221,32 @@ def predict(
     :param pose: angles to start from [rad] for the other pulleys; zero where not given.
     :return: rows; the efforts are the torques that the motion asks of the motors.
     """
-    arrays = arrays_of(
+    layout = along(instrument, prescribed, pushed, tolerance)
+    arrays = layout.arrays(instrument.effects if effects is None else effects)
+    return follow(instrument, arrays, motion, ticks, every=every, engine=engine, pose=pose)
+
+
+def along(
+    instrument: Instrument,
+    prescribed: Sequence[str],
+    pushed: Sequence[str] = (),
+    tolerance: float = TOLERANCE,
+) -> Layout:
+    """
+    Return the layout of a model that signals drive: whoever asks for many effects keeps it.
+
+    :param instrument: the network.
+    :param prescribed: pulleys whose motion is given, in the first rows of the signals.
+    :param pushed: pulleys that a given torque acts on, in the rows after them.
+    :param tolerance: as for :class:`Simulation`.
+    :return: the layout.
+    """
+    return Layout(
         instrument,
-        effects,
-        prescribed={name: row for row, name in enumerate(prescribed)},
-        pushed={name: len(prescribed) + row for row, name in enumerate(pushed)},
+        {name: row for row, name in enumerate(prescribed)},
+        {name: row for row, name in enumerate(pushed, start=len(prescribed))},
         tolerance=tolerance,
     )
-    return follow(instrument, arrays, motion, ticks, every=every, engine=engine, pose=pose)
 
 
 def follow(
@@ -242,7 +260,7 @@ def follow(
     pose: Mapping[str, float] | None = None,
 ) -> Rows:
     """
-    Drive a model whose arrays are there already, as :func:`predict` does.
+    Drive a model whose arrays are there already, from :func:`along`, as :func:`predict` does.
 
     :param instrument: the network.
     :param arrays: its numbers.
