@@ -49,14 +49,15 @@ class Unknowns(Residuals):
         Return what a deviation of each unknown costs before any data.
 
         What is left of a wrong model is no noise: its bins repeat each other. Counted one by one,
-        they would move any number of the file to the end of its tolerance.
+        they would move any number of the file to the end of its tolerance, and let friction
+        tremble until it lets go of whatever it is not.
 
         :param model: whose unknowns.
         :return: by its square on the axis, shape (unknowns,).
         """
         counted = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
         weight = np.array([axis.spread**-2 for axis in self.axes(model)])
-        weight[len(weight) - len(self.tolerances) :] *= counted
+        weight[sum(map(len, model.z)) :] *= counted
         return weight
 
     def still(self, model: Model) -> NDArray[np.bool_]:
