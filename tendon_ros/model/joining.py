@@ -115,9 +115,7 @@ def joined_source(structure: Structure, *, compiled: bool) -> str:
         if compiled:
             inline = node.name in INSIDE_CALLERS or node.name.endswith('_law')
             more = ', forceinline=True' if inline else ''
-            lines.append(
-                f'@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True{more}, {OPTIONS})'
-            )
+            lines.append(f'@njit(no_cpython_wrapper=True, no_cfunc_wrapper=True{more}, {OPTIONS})')
         _strip(node)
         lines.append(ast.unparse(node))
     return '\n'.join(lines) + (_entered(entries) if entries else '') + '\n'
