@@ -56,9 +56,13 @@ class Unknowns(Residuals):
         :return: by its square on the axis, shape (unknowns,).
         """
         counted = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
-        weight = np.array([axis.spread**-2 for axis in self.axes(model)])
-        weight[sum(map(len, model.z)) :] *= counted
-        return weight
+        own = [1.0] * sum(map(len, model.z))
+        # rigid friction is far from any angle: what holds the angle must not count
+        beside = [counted if name == 'dither' else 1.0 for _, name in model.bristle]
+        each = [*own, *beside, *([counted] * len(self.tolerances))]
+        return np.array(
+            [n * axis.spread**-2 for n, axis in zip(each, self.axes(model), strict=True)]
+        )
 
     def still(self, model: Model) -> NDArray[np.bool_]:
         """Return which unknowns do not move: tolerances that a cause owns, shape (unknowns,)."""

@@ -3,7 +3,6 @@
 import numpy as np
 
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.explanation import BRISTLES
 
 RUBS = Candidate('coulomb_friction', 'pulley_2')
 
@@ -15,10 +14,12 @@ def test_a_vector_and_back(sound_problem):
     assert len(sound_problem.labels(model)) == len(set(sound_problem.labels(model))) == len(x)
 
 
-def test_what_friction_has_beside_its_size_is_held_as_tolerances_are(sound_problem):
-    size, *beside = sound_problem.prior(sound_problem.empty.joined(RUBS, {'torque': 0.1}))
-    assert size == 0.0
-    assert len(beside) == len(BRISTLES) + len(sound_problem.tolerances)
+def test_trembling_is_held_as_tolerances_are_and_rigid_friction_is_free(sound_problem):
+    model = sound_problem.empty.joined(RUBS, {'torque': 0.1})
+    size, *beside = sound_problem.prior(model)
+    held = dict(zip([name for _, name in model.bristle], beside, strict=False))
     # bins repeat each other, and so does what they say of the one and of the other
-    assert set(beside) == {beside[-1]}
-    assert beside[-1] > 1.0
+    tolerances = set(beside[len(held) :])
+    assert tolerances == {held['dither']}
+    assert held['dither'] > held['angle'] == 1.0
+    assert size == 0.0
