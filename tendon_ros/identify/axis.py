@@ -15,7 +15,7 @@ class Axis:
 
     ``centre`` is where z = 0, ``scale`` what z = 1 adds, or the logarithm of what it multiplies
     with where ``log``. ``spread`` is the standard deviation of z before any data; infinite where
-    nothing is known.
+    nothing is known. ``repeated``: that counts as often as bins repeat each other.
     """
 
     name: str
@@ -26,6 +26,7 @@ class Axis:
     scale: float
     log: bool = False
     spread: float = math.inf
+    repeated: bool = True
 
     def value(self, z: float) -> float:
         """

@@ -24,9 +24,12 @@ FloatArray = NDArray[np.float64]
 BENT = 'presliding_friction'
 #: what dry friction has beside its size. It builds up over a fraction of a degree in every bearing
 #: that was ever measured; what takes more than the upper end is pre-sliding friction by name. And
-#: what holds lets go in time, since motors tremble within their counts
+#: what holds lets go in time, since motors tremble within their counts. Rigid friction is as far
+#: from any angle as can be: what holds the angle counts once only
 BRISTLES = {
-    'angle': Axis('angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0),
+    'angle': Axis(
+        'angle', 'rad', 1e-6, BENDING, 1e-3, math.log(4.0), log=True, spread=1.0, repeated=False
+    ),
     'dither': Axis('dither', 'rad/s', 1e-7, 1e-2, 1e-5, math.log(4.0), log=True, spread=1.0),
 }
 

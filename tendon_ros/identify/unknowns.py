@@ -55,13 +55,9 @@ class Unknowns(Residuals):
         :param model: whose unknowns.
         :return: by its square on the axis, shape (unknowns,).
         """
-        counted = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
-        own = [1.0] * sum(map(len, model.z))
-        # rigid friction is far from any angle: what holds the angle must not count
-        beside = [counted if name == 'dither' else 1.0 for _, name in model.bristle]
-        each = [*own, *beside, *([counted] * len(self.tolerances))]
+        repeated = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
         return np.array(
-            [n * axis.spread**-2 for n, axis in zip(each, self.axes(model), strict=True)]
+            [(repeated if a.repeated else 1.0) * a.spread**-2 for a in self.axes(model)]
         )
 
     def still(self, model: Model) -> NDArray[np.bool_]:
