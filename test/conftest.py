@@ -6,9 +6,14 @@ from pathlib import Path
 from hypothesis import HealthCheck, settings
 import pytest
 
-from tendon_ros.model.instrument import EffectUse
-from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.base.threads import use_one_thread
+
+use_one_thread()  # as all programs do; pytest runs a process on every core
+
+# these import numpy, which reads then how many threads it may use
+from tendon_ros.model.instrument import EffectUse  # noqa: E402
+from tendon_ros.model.session import simulate  # noqa: E402
+from tendon_ros.model.trajectory_choice import chosen  # noqa: E402
 
 # machines are shared and noisy: no test passes or fails by the time it took
 settings.register_profile('untimed', deadline=None, suppress_health_check=[HealthCheck.too_slow])

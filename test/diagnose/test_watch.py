@@ -49,7 +49,7 @@ def simulated(rig, seconds, changes=(), motion=None, seed=1):
     if motion is None:
         settings = {'duration': f'{seconds} s', 'amplitude': '5 deg'}
         motion = chosen('multisine', rig.motor_names, settings).sample(period)
-    every = round(0.002 / period)
+    every = round(0.005 / period)
     changes = dict(changes)
     stamps, columns = [], {}
     for second in range(seconds):
@@ -191,12 +191,13 @@ def test_a_gap_that_is_given_is_not_learnt(rig, changing):
 
 
 def test_a_bag_played_back_gives_the_same(rig, changing, tmp_path):
-    live = reports_of(Watch(rig), changing)
-    write_recording(changing, tmp_path / 'bag')
-    bag = read_recording(tmp_path / 'bag')
-    played = reports_of(Watch(rig), only_until(bag, 27.0), every=7)
+    some = only_until(changing, 21.0)
+    live = reports_of(Watch(rig), some)
+    write_recording(some, tmp_path / 'bag')
+    played = reports_of(Watch(rig), read_recording(tmp_path / 'bag'), every=7)
     common = [t for t in played if t > 4.0]
-    assert len(common) > 20
+    assert len(common) > 12
+    assert any(report.grown for report in live.values())
     for t in common:
         assert [g.channel for g in played[t].grown] == [g.channel for g in live[t].grown], t
         for gap in played[t].gaps:

@@ -15,6 +15,7 @@ from tendon_ros.effects import catalogue, data_sheet, find
 
 CATALOGUE = catalogue()
 EFFECTS = list(CATALOGUE.values())
+UNITS = pint.UnitRegistry()
 KINDS = {'pulley', 'cable', 'coupling', 'motor', 'sensor', 'contact'}
 SENSORS = {'angle', 'velocity', 'motor_torque', 'contact_force', 'contact_torque', 'loop_torque'}
 #: what a law of each hook is called with before its parameters
@@ -136,9 +137,8 @@ def test_parameters(effect):
 
 @over_effects
 def test_units_are_si(effect):
-    units = pint.UnitRegistry()
     for p in effect.parameters:
-        assert units.Quantity(1.0, p.unit).to_base_units().magnitude == pytest.approx(1.0)
+        assert UNITS.Quantity(1.0, p.unit).to_base_units().magnitude == pytest.approx(1.0)
 
 
 @over_effects

@@ -19,20 +19,20 @@ def bench():
 @pytest.fixture(scope='session')
 def pressing(bench):
     """Return a simulated recording without noise: the tip presses, then lets go."""
-    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=250.0)
+    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=100.0)
 
 
 @pytest.fixture(scope='session')
 def noisy(bench):
     """Return the same with the noise of the sensors."""
-    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=250.0, seed=7)
+    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=100.0, seed=7)
 
 
 @pytest.fixture(scope='session')
 def free_recording(bench):
     """Return a simulated recording in which the tip touches nothing."""
     away = replace(bench, contacts=tuple(replace(c, enabled=False) for c in bench.contacts))
-    return simulate(away, chosen('multisine', bench.motor_names, {'duration': '6 s'}), rate=250.0)
+    return simulate(away, chosen('multisine', bench.motor_names, {'duration': '6 s'}), rate=125.0)
 
 
 @pytest.fixture

@@ -208,17 +208,22 @@ def trace(recording: str, channel: str, seed: int, strength: float, seconds: flo
     )
 
 
-def evidence(**changes: object) -> Evidence:
-    """Return what goes with :func:`diagnosis`, with fields replaced."""
+def traces(*recordings: str) -> tuple[Trace, ...]:
+    """Return a trace of each channel and recording."""
     strengths = (7.9, 6.0, 4.2, 1.6)
+    return tuple(
+        trace(recording, channel, 3 * k + n, strength * (1.0 - 0.2 * n), 16.0)
+        for n, recording in enumerate(recordings)
+        for k, (channel, strength) in enumerate(zip(CHANNELS, strengths, strict=True))
+    )
+
+
+def evidence(*recordings: str, **changes: object) -> Evidence:
+    """Return what goes with :func:`diagnosis`, of some recordings, with fields replaced."""
     fields: dict[str, object] = {
         'instrument': 'bench_rig',
-        'recordings': RECORDINGS,
-        'traces': tuple(
-            trace(recording, channel, 3 * k + n, strength * (1.0 - 0.2 * n), 16.0)
-            for n, recording in enumerate(RECORDINGS)
-            for k, (channel, strength) in enumerate(zip(CHANNELS, strengths, strict=True))
-        ),
+        'recordings': recordings,
+        'traces': traces(*recordings),
         'closed_loop': (trace('contact', CHANNELS[2], 5, 11.0, 16.0),),
         'steps': (
             Step('', '', 6.1, 6.3),
@@ -282,7 +287,7 @@ def no_gap() -> Case:
             next_experiment=(),
             left_out=(),
         ),
-        evidence(steps=(Step('', '', 1.01, 1.06),), rivals=(), closed_loop=()),
+        evidence('contact', steps=(Step('', '', 1.01, 1.06),), rivals=(), closed_loop=()),
     )
 
 
@@ -298,7 +303,7 @@ def one_cause() -> Case:
             left_out=(),
         ),
         evidence(
-            recordings=RECORDINGS[:1],
+            'contact',
             traces=(trace('contact', CHANNELS[0], 1, 6.3, 16.0),),
             closed_loop=(),
             steps=(Step('', '', 6.1, 6.3), Step('tension_friction', 'pulley_3', 1.05, 1.1)),
@@ -318,7 +323,7 @@ def partly() -> Case:
                 probability=0.88, where=('pulley_2', 'cable_12'), regime='fast motion'
             ),
         ),
-        evidence(),
+        evidence('contact'),
     )
 
 
@@ -335,7 +340,7 @@ def unexplained() -> Case:
             unexplained=Unexplained(probability=0.96, where=('pulley_3',), regime='reversal'),
         ),
         evidence(
-            recordings=names,
+            *names,
             traces=tuple(
                 trace(name, channel, k, 4.0 + (k % 7), 6.0)
                 for k, name in enumerate(names)
@@ -349,7 +354,7 @@ def unexplained() -> Case:
 
 def three_causes() -> Case:
     """Return three effects, explained, with everything that a report can show."""
-    return diagnosis(), evidence()
+    return diagnosis(), evidence(*RECORDINGS)
 
 
 CASES: dict[str, Callable[[], Case]] = {
