@@ -83,6 +83,6 @@ WHAT_IS_HERE = (
     'report.html: what was found, with pictures.\n'
     'diagnosis.json: the same for programs.\n'
     'instrument.yaml: the instrument file with the effects that were found, those that are only '
-    'likely too where they foretell what no fit has seen; simulator, estimator and diagnose take '
+    'likely too where they hold on what no fit has seen; simulator, estimator and diagnose take '
     'it as it is.\n'
 )

@@ -14,7 +14,7 @@ import math
 
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, equals, foretells, IDLE, signs_beside
+from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import undoing
@@ -33,7 +33,7 @@ class Belief:
     ``weighed``: each of them; those that undo each other are not believed. ``named``: those that
     are named, with what speaks for them; ``companies``: causes that make up for one another, of
     which the first is named for all. ``accepted``: these and who is named through them.
-    ``kept``: the accepted ones and what foretells beside them.
+    ``kept``: the accepted ones, and what spoils nothing beside them.
     """
 
     weighed: tuple[Weighed, ...]
@@ -73,10 +73,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
     accepted = members | {*alone}
+    # fits want them, and what was held out is often a few seconds only: it must speak plainly
     beside = {
         k
         for k, cause in enumerate(causes)
-        if k not in accepted and not cause.instants and foretells(ready, found, k)
+        if k not in accepted and not cause.instants and not spoils(ready, found, found.without[k])
     }
     return Belief(
         weighed,

@@ -143,19 +143,6 @@ def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
 IDLE = 0.3
 
 
-def foretells(ready: Prepared, found: Found, k: int) -> bool:
-    """
-    Return whether a cause makes anything better on what no fit has seen.
-
-    :param ready: the problem.
-    :param found: what the search has found.
-    :param k: which cause.
-    :return: whether; an event need not have happened there.
-    """
-    happened = bool(found.final.model.causes[k].instants)
-    return happened or float(_foretold(ready, found, found.without[k]).sum()) > 0.0
-
-
 def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     """
     Return whether what a fit does without makes worse what no fit has seen, by more than chance.

@@ -111,7 +111,7 @@ class Diagnosis(_Frozen):
     """
     The whole answer.
 
-    ``beside``: effects that ``instrument.yaml`` has beside the named causes, since they foretell
+    ``beside``: effects that ``instrument.yaml`` has beside the named causes, since they hold on
     what no fit has seen; each may stand in for something else.
     """
 

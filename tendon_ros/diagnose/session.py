@@ -42,7 +42,7 @@ Report = Callable[[str, float], None]
 @dataclass(frozen=True)
 class Outcome:
     """
-    The verdict, what it rests on, and the instrument with all that foretells.
+    The verdict, what it rests on, and the instrument with all that holds.
 
     ``weighed`` are all causes that the search ended with, believed or not: calibration needs them.
     """

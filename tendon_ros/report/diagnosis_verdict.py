@@ -52,7 +52,7 @@ def beside_words(diagnosis: Diagnosis) -> str:
     """
     Return what is used beside the named causes.
 
-    :param diagnosis: the answer, with effects that foretell although they are not named.
+    :param diagnosis: the answer, with effects that hold although they are not named.
     :return: plain text with numbers.
     """
     before, after = (number(x) for x in overall(diagnosis))
@@ -60,7 +60,7 @@ def beside_words(diagnosis: Diagnosis) -> str:
     many = len(effects) > 1
     names = joined(effects)
     return (
-        f'{names[:1].upper()}{names[1:]} {"foretell" if many else "foretells"} what no fit has '
+        f'{names[:1].upper()}{names[1:]} {"hold" if many else "holds"} on what no fit has '
         f'seen, but may stand in for something else. instrument.yaml has '
         f'{"them" if many else "it"}: with all that it has, the gap of {before} noise deviations '
         f'shrinks to {after}.'

@@ -1,4 +1,4 @@
-"""What makes up for one another is named as a set; what foretells is kept, named or not."""
+"""What makes up for one another is named as a set; what spoils nothing is kept, named or not."""
 
 from dataclasses import replace
 
@@ -96,7 +96,7 @@ def test_a_motor_is_at_the_place_of_its_pulley(found_of):
         assert (signs_beside(ready.problem, found, found.without[1]).beside > 0.0) == beside
 
 
-def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
+def test_what_spoils_nothing_is_kept_though_it_is_not_named(found_of, monkeypatch):
     ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
     assert belief(ready, found).accepted == (0, 1)
     monkeypatch.setattr('tendon_ros.diagnose.belief.chance', lambda *_: 0.2)
@@ -105,6 +105,9 @@ def test_what_foretells_is_kept_though_it_is_not_named(found_of, monkeypatch):
     assert doubtful.accepted == ()
     assert doubtful.kept == (0, 1)
     assert doubtful.model(found, doubtful.kept) == found.final.model
+    gain = found.without[1]
+    monkeypatch.setattr('tendon_ros.diagnose.belief.spoils', lambda _r, _f, fit: fit is gain)
+    assert belief(ready, found).kept == (0,)
 
 
 def test_what_any_effect_does_as_well_is_not_named(found_of):

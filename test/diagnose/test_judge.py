@@ -1,4 +1,4 @@
-"""Causes that foretell nothing, and events between recordings."""
+"""Causes that spoil what no fit saw, and events between recordings."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from tendon_ros.diagnose import judge
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.form import form_parts
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, foretells, IDLE, Signs, signs_beside, spoils
+from tendon_ros.diagnose.judge import chance, IDLE, Signs, signs_beside, spoils
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -36,17 +36,16 @@ def found_with(problem, *uses):
     return found
 
 
-def test_a_true_cause_foretells(ready):
+def test_a_true_cause_spoils_nothing(ready):
     found = found_with(ready.problem, FRICTION)
-    assert foretells(ready, found, 0)
+    assert not spoils(ready, found, found.without[0])
 
 
-def test_a_cause_that_spoils_what_was_not_fitted_does_not(ready):
+def test_a_wrong_cause_spoils_what_was_not_fitted(ready):
     found = found_with(ready.problem, FRICTION)
     wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.05})
     found.without.append(found.final)
     found.states.append(replace(found.final, model=wrong))
-    assert not foretells(ready, found, 1)
     assert spoils(ready, found, found.without[1])
 
 

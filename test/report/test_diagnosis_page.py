@@ -128,7 +128,7 @@ def test_candidates_that_cannot_show_are_grouped_by_reason(page):
     assert 'Inertia pulley M, pulley L, pulley 1 leaves no trace at these speeds' in text
 
 
-def test_what_only_foretells_is_no_cause_and_said_to_be_none(page):
+def test_what_only_holds_is_no_cause_and_said_to_be_none(page):
     said = text_of(page('unexplained'))
     assert 'None is named as a cause' in said
     assert 'may stand in for something else' in said
