@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tendon_ros.model.instrument import Coupling, EffectUse, Pulley
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict, Simulation
 
@@ -107,21 +108,20 @@ def test_without_cables_the_load_is_what_passes_through(body):
     assert held[moving] == pytest.approx(expected[moving], abs=1e-4)
 
 
-def test_a_gear_rubs_with_what_it_transmits(body):
-    # a motor holds a weight through a shaft; its own pulley loses a part of what the shaft carries
-    plain = body()
+def test_a_gear_rubs_with_what_it_transmits():
+    # a motor winds up a spring through a shaft; its gear loses a part of what the shaft carries
+    tool = load_instrument('davinci_grasper')
     rig = replace(
-        plain,
-        pulleys=(*plain.pulleys, Pulley('weight', 0.01, 0.5)),
-        couplings=(Coupling('shaft', {'body': 1.0, 'weight': -1.0}, 50.0, 0.05),),
+        tool,
         effects=(
-            EffectUse('joint_spring', 'pulley_weight', {'stiffness': 3.0}),
-            EffectUse('tension_friction', 'pulley_body', {'coefficient': 0.1}),
+            EffectUse('joint_spring', 'pulley_spindle', {'stiffness': 3.0}),
+            EffectUse('tension_friction', 'pulley_motor', {'coefficient': 0.1}),
         ),
     )
     ramp = np.interp(1e-3 * np.arange(4001), [0.0, 2.0, 4.0], [0.0, 0.4, 0.1])
-    rows = predict(rig, Signals.through(0.0, 1e-3, ramp[None, :]), ('body',), 4000)
-    carried = rows.loop_force[:, 0]
+    rows = predict(rig, Signals.through(0.0, 1e-3, ramp[None, :]), ('motor',), 4000)
+    carried = rows.loop_force[:, len(rig.loops)]
+    assert carried.max() > 0.5
     for at, way in ((1500, 1.0), (3500, -1.0)):
         assert rows.effort[at, 0] == pytest.approx((1.0 + 0.1 * way) * carried[at], rel=1e-3)
 
