@@ -67,6 +67,15 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
     assert company.weighed.signs.worth > judged.weighed[first].signs.worth
 
 
+def test_much_that_stays_without_what_undoes_each_other_speaks_against_a_company(alike):
+    ready, found = alike
+    weighed = belief(ready, found).weighed
+    [company] = companies(ready, found, weighed, [0, 1])
+    much = 10.0 * company.weighed.signs.worth
+    left = [replace(w, signs=replace(w.signs, left=much)) for w in weighed]
+    assert companies(ready, found, left, [0, 1]) == []
+
+
 def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
     ready, found = alike
     weighed = list(belief(ready, found).weighed)
