@@ -9,8 +9,10 @@ not, the same file runs as plain Python, slower and to the same numbers within r
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 import contextlib
 from dataclasses import dataclass
+import fcntl
 from functools import lru_cache
 import hashlib
 import importlib.util
@@ -158,8 +160,22 @@ def _loaded(path: Path) -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    with contextlib.ExitStack() as undo:
+    with contextlib.ExitStack() as undo, _one_compiles(path):
         undo.callback(sys.modules.pop, name, None)
         spec.loader.exec_module(module)
         undo.pop_all()
     return module
+
+
+@contextlib.contextmanager
+def _one_compiles(path: Path) -> Iterator[None]:
+    """
+    Let all processes but one wait for machine code that is not there yet.
+
+    Nodes that start together would each compile the same kernel, half a minute of a core.
+    """
+    with path.open('rb') as file:
+        if not any((path.parent / '__pycache__').glob(f'{path.stem}.*.nbi')):
+            with contextlib.suppress(OSError):  # not every file system has locks
+                fcntl.flock(file, fcntl.LOCK_EX)
+        yield

@@ -1,7 +1,10 @@
 """The engine: one file for each structure, compiled or plain, never stale."""
 
 import ast
+from concurrent.futures import ThreadPoolExecutor
+import fcntl
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -75,3 +78,24 @@ def test_plain_arrays_are_lists(structure):
     given = np.arange(3.0)
     assert plain.array(given) == [0.0, 1.0, 2.0]
     assert all(type(n) is int for n in plain.array(np.arange(3)))
+
+
+def test_who_comes_while_another_process_compiles_waits_for_its_machine_code(tmp_path):
+    kernel, known = tmp_path / 'kernel_new.py', tmp_path / 'kernel_known.py'
+    for path in (kernel, known):
+        path.write_text('ONE = 1')
+    (tmp_path / '__pycache__').mkdir()
+    (tmp_path / '__pycache__' / 'kernel_known.entered-1.py312.nbi').touch()
+    with (
+        ThreadPoolExecutor() as pool,
+        kernel.open() as file,
+        known.open() as other,
+    ):
+        for one in (file, other):
+            fcntl.flock(one, fcntl.LOCK_EX)
+        assert engine._load(known).ONE == 1
+        waiting = pool.submit(engine._load, kernel)
+        time.sleep(0.2)
+        assert not waiting.done()
+        fcntl.flock(file, fcntl.LOCK_UN)
+        assert waiting.result().ONE == 1
