@@ -75,22 +75,17 @@ class Linearisation:
         table = np.array(entries, dtype=np.intp).reshape(-1, 3)
         self._shape = (m, n)
         self._cell = (table[:, 0], table[:, 1])
-        own = np.argsort(order)
-        places = {
-            name: at[name] + own for name in ('J_ANGLE', 'J_SPEED', 'TORQUE', 'SIDE', 'BUDGET')
-        }
-        places |= {name: at[name] + table[:, 2] for name in ('J_RADIUS', 'J_ARM', 'J_GRIP')}
-        places |= {
-            name: at[name] + np.arange(m)
-            for name in ('J_LOOP', 'J_LOOP_RATE', 'J_TOTAL', 'TENSION')
-        }
+        own, every = np.argsort(order), np.arange(m)
+        by_pulley = ('J_ANGLE', 'J_SPEED', 'TORQUE', 'SIDE', 'BUDGET')
+        by_cell = ('J_RADIUS', 'J_ARM', 'J_GRIP')
+        by_loop = ('J_LOOP', 'J_LOOP_RATE', 'J_TOTAL', 'TENSION')
         # all are taken at once: estimators do so several times a sample
-        self._places = np.concatenate(list(places.values()))
-        ends = np.cumsum([len(place) for place in places.values()]).tolist()
-        self._parts = {
-            name: slice(end - len(place), end)
-            for (name, place), end in zip(places.items(), ends, strict=True)
-        }
+        self._places = np.concatenate(
+            [at[name] + own for name in by_pulley]
+            + [at[name] + table[:, 2] for name in by_cell]
+            + [at[name] + every for name in by_loop]
+        )
+        self._ends = (len(by_pulley) * n, len(by_pulley) * n + len(by_cell) * len(table))
 
     def read(self, runner: Runner) -> Balance:
         """
@@ -101,20 +96,20 @@ class Linearisation:
         """
         work = np.asarray(runner.work, dtype=np.float64)
         taken = work[self._places]
-        part = {name: taken[own] for name, own in self._parts.items()}
-        radius, arm, grip = np.zeros((3, *self._shape))
-        radius[self._cell] = part['J_RADIUS']
-        arm[self._cell] = part['J_ARM']
-        grip[self._cell] = part['J_GRIP']
-        stiffness = arm.T @ (part['J_LOOP'][:, None] * radius)
-        stiffness -= grip.T @ (part['J_TOTAL'][:, None] * radius)
-        damping = arm.T @ (part['J_LOOP_RATE'][:, None] * radius)
-        diagonal = np.arange(self._shape[1])
-        stiffness[diagonal, diagonal] -= part['J_ANGLE']
-        damping[diagonal, diagonal] -= part['J_SPEED']
-        friction = part['SIDE'] * part['BUDGET']
-        torque = part['TORQUE'] + friction
-        return Balance(torque, stiffness, damping, part['TENSION'], part['J_LOOP'], friction)
+        m, n = self._shape
+        first, last = self._ends
+        by_angle, by_speed, torque, side, budget = taken[:first].reshape(5, n)
+        dense = np.zeros((3, m, n))
+        dense[:, self._cell[0], self._cell[1]] = taken[first:last].reshape(3, -1)
+        radius, arm, grip = dense
+        loop, rate, total, tension = taken[last:].reshape(4, m)
+        stiffness = arm.T @ (loop[:, None] * radius)
+        stiffness -= grip.T @ (total[:, None] * radius)
+        damping = arm.T @ (rate[:, None] * radius)
+        stiffness.flat[:: n + 1] -= by_angle
+        damping.flat[:: n + 1] -= by_speed
+        friction = side * budget
+        return Balance(torque + friction, stiffness, damping, tension, loop, friction)
 
 
 class Statics:
