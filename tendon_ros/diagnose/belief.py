@@ -9,7 +9,7 @@ off with them, so the instrument that a diagnosis writes has them.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import math
 
 from tendon_ros.diagnose.company import companies
@@ -104,7 +104,7 @@ def _weighed(ready: Prepared, found: Found, k: int, left: float, undone: bool) -
     ``left``: structured misfit of all that may be believed; ``undone``: whether others undo it.
     """
     without = found.without[k]
-    signs = replace(signs_beside(ready.problem, found, without), left=left)
+    signs = signs_beside(ready.problem, found, without, left)
     likely = chance(ready, found, k, signs)
     cause = found.final.model.causes[k]
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))

@@ -75,8 +75,8 @@ def companies(
         without = without_all(members)
         if not math.isfinite(without.cost):
             continue
-        # what stays is what stays without those that are not able
-        signs = replace(signs_beside(problem, found, without), left=weighed[first].signs.left)
+        # what undoes each other is not believed, and what stays is the same for all
+        signs = signs_beside(problem, found, without, weighed[first].signs.left)
         likely = probability(signs)
         if likely < NAMED or spoils(ready, found, without):
             continue

@@ -107,18 +107,19 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
-def signs_beside(problem: Problem, found: Found, without: Fit) -> Signs:
+def signs_beside(problem: Problem, found: Found, without: Fit, left: float | None = None) -> Signs:
     """
     Return what speaks for what a fit does without.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param without: the fit without one cause, or without several that make up for one another.
+    :param left: structured misfit of all that may be believed; of the last state where None.
     :return: the signs.
     """
     final = found.final
     samples = len(final.left)
-    left = problem.structured(final.left)
+    left = problem.structured(final.left) if left is None else left
     worth, in_one = gains(problem, without, final)
     explained = (found.start.cost - final.cost) / samples
     parts = form_parts(problem, found.start, final)
