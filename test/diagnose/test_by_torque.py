@@ -10,20 +10,20 @@ from tendon_ros.base.recording import Channel
 from tendon_ros.base.resources import config_path
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
-HALF = 10.0  # [s]
+EARLY = 6.0  # [s]
 TABLE = Path(__file__).parents[2] / 'docs' / 'rigs' / 'belt_by_voltage.csv'
 
 
 @pytest.fixture(scope='module')
 def outcome(quick):
-    """Return what is said of the first half of the tutorial's recording."""
+    """Return what is said of the first seconds of the tutorial's recording."""
     mapping = load_mapping(config_path('imports/belt_by_voltage.yaml'))
     [run] = import_runs(TABLE, mapping)
-    half = [
-        Channel(c.name, c.time[c.time < HALF], c.value[c.time < HALF])
+    early = [
+        Channel(c.name, c.time[c.time < EARLY], c.value[c.time < EARLY])
         for c in run.channels.values()
     ]
-    return quick([run.with_channels(half)], load_instrument('belt_by_voltage'))
+    return quick([run.with_channels(early)], load_instrument('belt_by_voltage'))
 
 
 def test_a_speed_without_sign_is_found_beside_guesses(outcome):

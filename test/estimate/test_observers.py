@@ -119,7 +119,7 @@ def test_what_is_known_of_a_force_makes_it_known_better(rms):
             replace(s, noise=8e-3) if s.kind == 'loop_torque' else s for s in grasper.sensors
         ),
     )
-    motion = {'amplitude': '70 deg', 'duration': '10 s', 'frequency': '0.1 Hz'}
+    motion = {'amplitude': '70 deg', 'duration': '6 s', 'frequency': '0.17 Hz'}
     profile = chosen('sine', loud.motor_names, motion)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
     off = {}
