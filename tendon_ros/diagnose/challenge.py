@@ -16,7 +16,7 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.parts import is_part, plain, widened
-from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import bared, close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
@@ -24,6 +24,7 @@ from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Proposal, Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
+BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
 REPLACED = 6  # causes at most that challenges replace
 CREEPING = 20  # rounds at most in which a fit comes to its end
 
@@ -163,6 +164,9 @@ class Challenge:
         if not brief:
             begun += self._elsewhere(found.final, cause, among)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
+        if not brief:
+            begun = self._beside_the_others(found.final, cause, without, rivals)
+            rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = self._sharpened(found, without, rivals)
         return [r for r in rivals if self._more_than_a_part(r)]
 
@@ -205,6 +209,23 @@ class Challenge:
             if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
         ]
         return self._instead(state, cause, [(c, values) for c in others])
+
+    def _beside_the_others(
+        self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]
+    ) -> list[Rival]:
+        """
+        Return the fits of rivals that came halfway, which begin where the others now stand.
+
+        A weight and a spring of a small angle do the same, but not beside others that have moved
+        to make up for the one before the other came.
+        """
+        close = {r.candidate for r in close_ones(self._problem, state, without, rivals)}
+        far = [c for c in halfway(state, without, rivals) if c not in close][:BEGUN_ANEW]
+        rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
+        if rest is None:
+            return []
+        proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], far))
+        return self._instead(state, cause, [(p.candidate, p.values) for p in proposals])
 
     def _instead(
         self, state: Fit, cause: Candidate, begun: Sequence[tuple[Candidate, dict[str, float]]]

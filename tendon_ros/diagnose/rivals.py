@@ -30,6 +30,29 @@ def halfway(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate
     return [r.candidate for r in rivals if r.fit.cost < half]
 
 
+def bared(problem: Problem, state: Fit, k: int) -> Fit | None:
+    """
+    Return a state as it is without one of its causes, nothing else moved.
+
+    What a rival would have to do there is all that the cause does. Fitted again without it, the
+    others may go to a valley from which no rival finds back.
+
+    :param problem: the data.
+    :param state: with the cause.
+    :param k: which cause.
+    :return: the rest with the derivatives of the state; None where it cannot be computed.
+    """
+    rest = state.model.without(k)
+    left = problem.left(rest)
+    if not np.isfinite(left).all():
+        return None
+    known = problem.slopes(state)
+    nothing = np.zeros(len(left))
+    slope = np.stack([known.get(label, nothing) for label in problem.labels(rest)], axis=1)
+    x = problem.pack(rest)
+    return Fit(rest, left, slope, float(left @ left + problem.prior(rest) @ x**2))
+
+
 def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Rival]:
     """
     Return the rivals that make up for nearly all of a cause.

@@ -2,13 +2,19 @@
 
 from dataclasses import replace
 
+import numpy as np
+import pytest
+
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import bared, close_ones, halfway, relieved
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.screening import Screen
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 DAMPED = Candidate('viscous_friction', 'pulley_L')
+WEIGHT = Candidate('gravity', 'pulley_3')
+SPRING = Candidate('joint_spring', 'pulley_3')
 FAR = Candidate('torque_bias', 'motor_M')
 
 
@@ -40,3 +46,29 @@ def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
     ]
     assert halfway(state, without, rivals) == [COULOMB, DAMPED]
     assert close_ones(problem, state, without, rivals) == rivals[:1]
+
+
+def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, measured_on):
+    run = measured_on(
+        bench,
+        ('gravity', 'pulley_3', {'torque': 0.5, 'phase': -0.03}),
+        ('viscous_friction', 'pulley_L', {'damping': 0.6}),
+    )
+    problem = prepared([run], bench).problem
+    both = problem.empty.joined(DAMPED, {'damping': 0.6})
+    both = both.joined(WEIGHT, {'torque': 0.5, 'phase': -0.03})
+    state = problem.fitted(both, rounds=2)
+    bare = bared(problem, state, 1)
+    assert bare.model.causes == (DAMPED,)
+    np.testing.assert_array_equal(bare.model.moved, state.model.moved)
+    np.testing.assert_array_equal(bare.left, problem.left(state.model.without(1)))
+    columns = dict(zip(problem.labels(bare.model), bare.slope.T, strict=True))
+    for label, column in problem.slopes(state).items():
+        if label in columns:
+            np.testing.assert_array_equal(columns[label], column)
+    # at small angles a spring is a weight, and that is what it is asked to be
+    screen = Screen(problem, bare)
+    [best, *_] = screen.proposals(SPRING)
+    spring = screen.corrected(best).values
+    assert spring['stiffness'] == pytest.approx(state.model.values(1)['torque'], rel=0.1)
+    assert spring['rest'] == pytest.approx(state.model.values(1)['phase'], abs=0.01)
