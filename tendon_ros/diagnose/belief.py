@@ -12,6 +12,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 import math
 
+from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils
@@ -33,7 +34,8 @@ class Belief:
     ``weighed``: each of them; those that undo each other are not believed. ``named``: those that
     are named, with what speaks for them; ``companies``: causes that make up for one another, of
     which the first is named for all. ``accepted``: these and who is named through them.
-    ``kept``: the accepted ones, and what spoils nothing beside them.
+    ``kept``: the accepted ones, and what spoils nothing beside them. ``early``: who is early where
+    all other sensors are late; those delays are not believed.
     """
 
     weighed: tuple[Weighed, ...]
@@ -41,6 +43,7 @@ class Belief:
     companies: tuple[tuple[int, ...], ...]
     accepted: tuple[int, ...]
     kept: tuple[int, ...]
+    early: Early | None
 
     def model(self, found: Found, which: Collection[int]) -> Model:
         """
@@ -64,7 +67,8 @@ def belief(ready: Prepared, found: Found) -> Belief:
         prediction, since it will not happen again.
     """
     causes = found.final.model.causes
-    undone = undoing(ready.problem, found.final)
+    ahead = early(ready.problem, found.final.model)
+    undone = undoing(ready.problem, found.final) | (ahead.late if ahead else frozenset())
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
     able = [k for k in range(len(causes)) if k not in undone]
@@ -85,6 +89,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         tuple(company.members for company in together),
         tuple(sorted(accepted)),
         tuple(sorted(accepted | beside)),
+        ahead,
     )
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from tendon_ros.diagnose.parts import simpler
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
@@ -114,23 +113,6 @@ def _travel(problem: Problem, pulley: str) -> float | None:
         if pulley in segment.prescribed
     ]
     return max(travels, default=None)
-
-
-def least_late(problem: Problem, model: Model) -> int | None:
-    """
-    Return the smallest delay where every sensor has one: what all share is the clock's.
-
-    :param problem: the data.
-    :param model: causes.
-    :return: which cause; None where some sensor is on time.
-    """
-    rollouts = problem.rollouts
-    sensors = {m.sensor.name for s in rollouts.segments for m in s.measured}
-    sensors |= {d.sensor.name for d in drives(rollouts.instrument)}
-    late = {k: c.place for k, c in enumerate(model.causes) if c.effect == 'sensor_delay'}
-    if not sensors <= set(late.values()):
-        return None
-    return min(late, key=lambda k: model.values(k)['time'])
 
 
 def at_once(

@@ -14,6 +14,7 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.clock import early_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
@@ -130,7 +131,11 @@ def diagnose(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
         next_experiment=ahead,
-        left_out=(*intake.left_out, *said_of_torque(instrument)),
+        left_out=(
+            *intake.left_out,
+            *said_of_torque(instrument),
+            *([early_words(held.early)] if held.early else []),
+        ),
     )
     evidence = Evidence(
         instrument=instrument.name,

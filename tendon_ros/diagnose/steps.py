@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late
+from tendon_ros.diagnose.bent import at_once, degenerate, excuses
+from tendon_ros.diagnose.clock import least_late
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.worth import needed, worthwhile

@@ -2,10 +2,8 @@
 
 import pytest
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses, least_late
-from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.bent import at_once, degenerate, excuses
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.mark.parametrize(
@@ -56,13 +54,3 @@ def test_events_at_once_are_one(effect, place, only, values, same):
     other = Candidate(effect, place, only), values
     assert at_once(push, other) is same
     assert at_once(other, push) is same
-
-
-def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
-    body = load_instrument('single_body')
-    run = measured_on(body, settings=(('duration', '4 s'), ('amplitude', '30 deg')))
-    problem = prepared([run], body).problem
-    one = problem.empty.joined(Candidate('sensor_delay', 'encoder_body'), {'time': 0.012})
-    assert least_late(problem, one) is None
-    both = one.joined(Candidate('sensor_delay', 'torque_body'), {'time': 0.011})
-    assert least_late(problem, both) == 1

@@ -1,0 +1,60 @@
+"""Delays: what all sensors share is the clock's, and who alone has none is early."""
+
+import pytest
+
+from tendon_ros.diagnose.clock import early, early_words, least_late
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
+
+
+def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '4 s'), ('amplitude', '30 deg')))
+    problem = prepared([run], body).problem
+    one = problem.empty.joined(Candidate('sensor_delay', 'encoder_body'), {'time': 0.012})
+    assert least_late(problem, one) is None
+    both = one.joined(Candidate('sensor_delay', 'torque_body'), {'time': 0.011})
+    assert least_late(problem, both) == 1
+
+
+@pytest.fixture(scope='module')
+def problem(bench, measured_on):
+    return prepared([measured_on(bench)], bench).problem
+
+
+def delayed(problem, **late):
+    """Return a model whose sensors are late [ms], a spring beside them."""
+    model = problem.empty.joined(
+        Candidate('joint_spring', 'pulley_3'), {'stiffness': 0.1, 'rest': 0.0}
+    )
+    for sensor, time in late.items():
+        model = model.joined(Candidate('sensor_delay', sensor), {'time': 1e-3 * time})
+    return model
+
+
+def test_who_alone_is_not_late_is_early(problem):
+    others = {'encoder_M': 26.0, 'encoder_L': 26.3, 'torque_M': 25.0, 'load_cell': 25.7}
+    others |= {f'encoder_{n}': 26.0 for n in (1, 2, 3)}
+    found = early(problem, delayed(problem, **others))
+    assert found.sensors == ('torque_L',)
+    assert found.time == pytest.approx(0.026)
+    assert found.late == frozenset(range(1, 8))
+    assert 'all sensors but torque_L are late by 26 ms' in early_words(found)
+
+
+@pytest.mark.parametrize(
+    'changed',
+    [
+        {'torque_M': 14.0},  # that is no shared time
+        {'torque_M': None, 'load_cell': None},  # all encoders, by one bus
+        {'load_cell': None},  # two of several kinds
+        {'encoder_M': None, 'encoder_L': None, 'encoder_1': None, 'encoder_2': None},  # too many
+    ],
+)
+def test_others_that_are_late_are_late(problem, changed):
+    late = dict.fromkeys(('encoder_M', 'encoder_L', 'torque_M', 'load_cell'), 26.0)
+    late |= {f'encoder_{n}': 26.0 for n in (1, 2, 3)}
+    late = {k: v for k, v in (late | changed).items() if v is not None}
+    assert early(problem, delayed(problem, **late)) is None
+    assert early(problem, delayed(problem)) is None
