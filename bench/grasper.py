@@ -4,14 +4,17 @@ Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.gr
 Trains on six runs of three frequencies and two loads, or on ``--trained``, or takes the instrument
 file of an earlier diagnosis, and says of the runs that it has not seen: the torque of the spindle
 predicted from the jaw's torque and the motion; the jaw's torque and angle estimated from the
-spindle, and from the motor alone, without and with knowing how fast the load changes. Standard
+spindle, and from the motor alone, without and with knowing how fast the load changes. With
+``--tool`` the tool is looked at without its drive: the motion is that of its spindle. Standard
 output is a table, a picture goes to ``--figure``.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -33,16 +36,47 @@ FloatArray = NDArray[np.float64]
 
 TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in (2, 8))
 EVERY = tuple(f'{speed}{load}' for speed in range(5) for load in range(10))
-SPINDLE = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
-MOTOR = ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort')
 JAW = 'pulley/pulley_jaw/position'
 LOAD = 'load_cell/torque'
 RATE = 50.0  # [Hz] of what is compared: the motions are of half a hertz
 
 
-def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, FloatArray, FloatArray]:
+@dataclass(frozen=True)
+class Rig:
     """
-    Return times [s], the spindle's torque as measured and as the model has it [N m].
+    What is looked at.
+
+    ``name``: of instrument file and mapping; ``ends``: from whose angle and torque the jaw is
+    estimated, the spindle first.
+    """
+
+    name: str
+    ends: Mapping[str, tuple[str, str]]
+
+    @property
+    def torque(self) -> str:
+        """The channel of the spindle's torque."""
+        return self.ends['spindle'][1]
+
+
+WHOLE = Rig(
+    'davinci_grasper',
+    {
+        'spindle': ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort'),
+        'motor': ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort'),
+    },
+)
+TOOL = Rig(
+    'davinci_tool',
+    {'spindle': ('actuator/pulley_input/position', 'pulley/pulley_spindle/effort')},
+)
+
+
+def predicted(
+    run: Recording, instrument: Instrument, torque: str
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """
+    Return times [s], a torque of a channel as measured and as the model has it [N m].
 
     All at ``RATE``: bins follow the speed, and every run counts by its length.
     """
@@ -50,7 +84,7 @@ def predicted(run: Recording, instrument: Instrument) -> tuple[FloatArray, Float
     [segment] = problem.rollouts.segments
     [rows] = problem.rollouts.predicted([[]])
     channels = [m.sensor.channel for m in segment.measured]
-    at = channels.index(SPINDLE[1])
+    at = channels.index(torque)
     time = np.arange(SETTLING, segment.time[-1], 1.0 / RATE)
     measured, model = (
         np.interp(time, segment.time, row) for row in (segment.measured[at].value, rows[at])
@@ -90,6 +124,7 @@ def main() -> None:
     """Diagnose, judge, print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
     parser.add_argument('file', help='Tool_5_Maryland_L_3.npz, or another of its kind')
+    parser.add_argument('--tool', action='store_true', help='the tool alone, without its drive')
     parser.add_argument('--instrument', help='of an earlier diagnosis, instead of a new one')
     parser.add_argument(
         '--trained', nargs='+', default=TRAINED, metavar='RUN', choices=EVERY,
@@ -98,9 +133,10 @@ def main() -> None:
     parser.add_argument('--out', type=Path, default=Path('out/grasper.yaml'), help='file to write')
     parser.add_argument('--figure', type=Path, help='picture to write')
     args = parser.parse_args()
-    mapping = load_mapping(config_path('imports/davinci_grasper.yaml'))
+    rig = TOOL if args.tool else WHOLE
+    mapping = load_mapping(config_path(f'imports/{rig.name}.yaml'))
     runs = {run.name: run for run in import_runs(args.file, mapping, EVERY)}
-    plain = load_instrument('davinci_grasper')
+    plain = load_instrument(rig.name)
     if args.instrument:
         found = load_instrument(args.instrument)
     else:
@@ -121,16 +157,11 @@ def main() -> None:
     held = [run for key, run in runs.items() if key not in args.trained]
     print(f'{len(held)} runs that no fit has seen')
     for name, instrument in (('file', plain), ('diagnosed', found)):
-        off = [a - b for _, a, b in (predicted(run, instrument) for run in held)]
+        off = [a - b for _, a, b in (predicted(run, instrument, rig.torque) for run in held)]
         print(f'{name:10} spindle torque from jaw torque and motion {1e3 * rms(off):6.2f} mN m')
     wander = wandered([runs[key] for key in args.trained])
     print(f'the load wanders by {1e3 * wander:.0f} mN m in a second, in the runs of the diagnosis')
-    for name, channels, known in (
-        ('spindle', SPINDLE, None),
-        ('motor', MOTOR, None),
-        ('spindle', SPINDLE, wander),
-        ('motor', MOTOR, wander),
-    ):
+    for known, (name, channels) in product((None, wander), rig.ends.items()):
         rows = [estimated(run, found, channels, known) for run in held]
         inside = np.abs(np.concatenate([r[2] for r in rows])) < 1.96
         angle = [r[1] for r in rows]
@@ -142,13 +173,14 @@ def main() -> None:
             f'{np.rad2deg(rms(angle)):5.2f} deg with it, 95 % intervals hold {inside.mean():.0%}'
         )
     if args.figure:
-        drawn(runs, ('14', '37'), (plain, found), args.figure)
+        drawn(runs, ('14', '37'), (plain, found), rig.torque, args.figure)
 
 
 def drawn(
     runs: dict[str, Recording],
     keys: Sequence[str],
     instruments: tuple[Instrument, Instrument],
+    torque: str,
     path: Path,
 ) -> None:
     """Draw the spindle's torque of some runs, measured, by the file, and diagnosed."""
@@ -160,7 +192,7 @@ def drawn(
     figure, axes = plt.subplots(len(keys), 1, figsize=(9, 2.6 * len(keys)), sharex=True)
     for axis, key in zip(np.atleast_1d(axes), keys, strict=True):
         for name, instrument in zip(('instrument file', 'diagnosed'), instruments, strict=True):
-            time, measured, model = predicted(runs[key], instrument)
+            time, measured, model = predicted(runs[key], instrument, torque)
             if name == 'instrument file':
                 axis.plot(time, 1e3 * measured, color='black', linewidth=1.6, label='measured')
             axis.plot(time, 1e3 * model, linewidth=1.0, label=name)

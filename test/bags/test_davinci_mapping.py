@@ -91,3 +91,19 @@ def test_zeros_agree_without_load(runs):
         torque = value(run, 'pulley/pulley_spindle/effort')
         _, at_rest = np.polyfit(torque, spindle - motor, 1)
         assert abs(at_rest) < 0.08
+
+
+def test_the_tool_alone_reads_the_same(runs, davinci_npz):
+    [alone] = import_runs(
+        davinci_npz, load_mapping(config_path('imports/davinci_tool.yaml')), ['24']
+    )
+    [whole] = [run for run in runs if run.name == '24']
+    same = {
+        'actuator/pulley_input/position': 'pulley/pulley_spindle/position',
+        'pulley/pulley_spindle/effort': 'pulley/pulley_spindle/effort',
+        'pulley/pulley_jaw/position': 'pulley/pulley_jaw/position',
+        'load_cell/torque': 'load_cell/torque',
+    }
+    assert set(alone.channels) == set(same)
+    for name, original in same.items():
+        np.testing.assert_array_equal(value(alone, name), value(whole, original))
