@@ -14,6 +14,9 @@ Equation::
 ``amplitude`` is the distance between centre and axis by the radius. At theta = 0 nothing is added:
 that is where the cables were mounted. All loops on the pulley see the same.
 
+Up to a fifth of the radius the first order is good to two per cent. A wheel that were bored off by
+more would, over a small turn, be a wheel of another size, and imitate whatever sits on it.
+
 Source: geometry of a circle about another point, to first order.
 """
 
@@ -23,6 +26,8 @@ import math
 
 from tendon_ros.base.effect import Effect
 from tendon_ros.base.parameter import Parameter
+
+LARGEST = 0.2  # amplitude up to which the first order is good
 
 
 def eccentricity_law(theta: float, amplitude: float, phase: float) -> tuple[float, float, float]:
@@ -41,8 +46,8 @@ EFFECT = Effect(
             unit='1',
             meaning='distance between centre and axis, by the radius',
             neutral=0.0,
-            low=-0.5,
-            high=0.5,
+            low=-LARGEST,
+            high=LARGEST,
             typical=0.02,
         ),
         Parameter(

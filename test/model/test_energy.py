@@ -79,7 +79,7 @@ def test_without_friction_the_network_keeps_its_energy(bench_rig, linear):
 
 def test_eccentric_winding_is_virtual_work(bench_rig, linear):
     # arc and lever of an eccentric pulley must belong together, or it would be a motor
-    shape = {'1': (0.3, 0.7), '3': (0.2, -0.3)}
+    shape = {'1': (0.2, 0.7), '3': (0.15, -0.3)}
     effects = tuple(
         EffectUse('eccentricity', f'pulley_{name}', {'amplitude': a, 'phase': p})
         for name, (a, p) in shape.items()

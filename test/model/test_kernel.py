@@ -20,7 +20,7 @@ IN_SITU = {
     'gravity': (('gravity', 'pulley_3', {'torque': 0.3, 'phase': 0.4}),),
     'spring': (('joint_spring', 'pulley_2', {'stiffness': 2.0, 'rest': 0.1}),),
     'eccentricity': (
-        ('eccentricity', 'pulley_1', {'amplitude': 0.3, 'phase': 0.7}),
+        ('eccentricity', 'pulley_1', {'amplitude': 0.2, 'phase': 0.7}),
         ('eccentricity', 'pulley_3', {'amplitude': 0.2, 'phase': -0.3}),
     ),
     'creep': (('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02, 'share': 0.3}),),
@@ -38,7 +38,7 @@ IN_SITU = {
     ),
     'creep with friction and eccentricity': (
         ('cable_creep', 'cable_12', {'fraction': 0.5, 'time': 0.02, 'share': 0.8}),
-        ('eccentricity', 'pulley_1', {'amplitude': 0.3, 'phase': 0.7}),
+        ('eccentricity', 'pulley_1', {'amplitude': 0.2, 'phase': 0.7}),
         ('tension_friction', 'pulley_1', {'coefficient': 0.1}),
     ),
 }
