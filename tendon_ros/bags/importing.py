@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -17,6 +18,8 @@ from tendon_ros.base.recording import Channel, FloatArray, Recording
 BoolArray = NDArray[np.bool_]
 
 #: stamps that stray further from an even spacing are worth a warning [share of the spacing]
+YEAR = 365.25 * 86400.0  # [s]
+LONGEST = 250.0 * YEAR  # since its epoch: what whole nanoseconds can say
 JITTER = 0.5
 
 
@@ -115,18 +118,47 @@ def _repeated(time: FloatArray, value: FloatArray) -> BoolArray:
 def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArray, BoolArray]:
     """Return stamps as a bag keeps them, and which rows have a usable one; tell of the others."""
     usable = np.isfinite(time)
+    last = float(np.abs(time[usable]).max(initial=0.0))
+    if last > LONGEST:
+        raise RecordingError(
+            f'{place}: its time reaches {last:.3g} s, which is {last / YEAR:.0f} years; say the '
+            'unit of the column in the mapping, ms or us perhaps'
+        )
     # Whole nanoseconds, so that the bag reads back as the same numbers.
     time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
-    latest = np.maximum.accumulate(np.where(usable, time, -np.inf))
-    usable[1:] &= time[1:] > latest[:-1]
+    usable[usable] = _increasing(time[usable])
     if not usable.all():
         first = int(np.flatnonzero(~usable)[0])
         warnings.append(
-            f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not after '
-            f'the row before, or not a number), first row {first}'
+            f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not between '
+            f'those of the rows beside, or not a number), first row {first}'
         )
     _warn_of_jitter(place, time[usable], warnings)
     return time, usable
+
+
+def _increasing(time: FloatArray) -> BoolArray:
+    """Return the most rows whose stamps increase, so that one wild stamp costs one row."""
+    kept = np.ones(time.size, dtype=np.bool_)
+    if bool(np.all(np.diff(time) > 0.0)):
+        return kept
+    # patience sorting: the smallest stamp, and its row, that ends a chain of each length
+    ends: list[float] = []
+    rows: list[int] = []
+    before = np.full(time.size, -1)
+    for row, stamp in enumerate(time.tolist()):
+        length = bisect_left(ends, stamp)
+        if length < len(ends) and ends[length] == stamp:  # of equals the first stays
+            continue
+        ends[length : length + 1] = [stamp]
+        rows[length : length + 1] = [row]
+        before[row] = rows[length - 1] if length else -1
+    kept[:] = False
+    row = rows[-1]
+    while row >= 0:
+        kept[row] = True
+        row = int(before[row])
+    return kept
 
 
 def _warn_of_jitter(place: str, time: FloatArray, warnings: list[str]) -> None:

@@ -157,9 +157,11 @@ def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
     if len(segments) >= WHOLE:
         fitted = enough(segments, shift)
         return [np.full(len(s.time), n not in fitted) for n, s in enumerate(segments)]
+    # where even the longest is shorter than that, its last block is held out all the same
+    block = min(BLOCK, max(s.time[-1] for s in segments) / KEPT)
     # blocks of different recordings are staggered, so that no phase of a motion is always unseen
     return [
-        (np.floor(s.time / BLOCK).astype(np.int64) + n + shift) % KEPT == KEPT - 1
+        (np.floor(s.time / block).astype(np.int64) + n + shift) % KEPT == KEPT - 1
         for n, s in enumerate(segments)
     ]
 

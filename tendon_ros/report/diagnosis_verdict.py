@@ -36,6 +36,7 @@ UNIT = (
     'data that no fit has seen.'
 )
 
+_MUCH = 1.5  # noise deviations that a reader would call a gap
 _NAMED = 3  # more effects than that make a sentence unreadable
 
 
@@ -148,7 +149,15 @@ def _no_gap(diagnosis: Diagnosis) -> str:
     if not diagnosis.gap:
         return 'No gap: no channel disagrees with the model.'
     worst = max(diagnosis.gap, key=lambda g: in_floors(g)[0])
-    name, off = channel_words(worst.channel), number(in_floors(worst)[0])
+    name = channel_words(worst.channel)
+    before, after = in_floors(worst)
+    off = number(before)
+    if before > _MUCH and after < 0.5 * before:
+        return (
+            f'No gap that has a cause: with the numbers of the file {name} is off by {off} noise '
+            f'deviations, and by {number(after)} once what is guessed, or within its tolerance, '
+            'is fitted.'
+        )
     if len(diagnosis.gap) == 1:
         return f'No gap: {name} is off by {off} noise deviations.'
     return (

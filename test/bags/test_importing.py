@@ -181,6 +181,23 @@ def test_bad_time_and_nan_are_left_out_and_told(tmp_path):
     assert 'first row 20' in value
 
 
+def test_one_wild_stamp_costs_one_row(tmp_path):
+    table = np.stack([TIME, COUNTS, COUNTS], axis=1)
+    table[10, 0] = 1e6
+    np.savez(tmp_path / 'x.npz', **{'1': table})
+    (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
+    assert np.array_equal(run['load_cell/force'].time, np.delete(np.round(TIME, 9), 10))
+    assert '1 of 40 rows left out' in run.warnings[0]
+    assert 'first row 10' in run.warnings[0]
+
+
+def test_stamps_that_no_clock_gives_name_the_unit(tmp_path):
+    table = np.stack([1.7e18 + 1e6 * np.arange(N), COUNTS, COUNTS], axis=1)
+    np.savez(tmp_path / 'x.npz', **{'1': table})
+    with pytest.raises(RecordingError, match=r'reaches 1\.7e\+18 s, .* years; say the unit'):
+        imported(tmp_path, tmp_path / 'x.npz', MAPPING)
+
+
 def test_a_column_of_nan_is_unmeasured(tmp_path):
     table = np.stack([TIME, COUNTS, COUNTS * np.nan], axis=1)
     np.savez(tmp_path / 'x.npz', **{'1': table})

@@ -35,6 +35,14 @@ def test_too_short(bench, sound):
         admitted([brief], bench)
 
 
+def test_too_slow(bench, sound):
+    slow = every_channel(sound[0], lambda t, v: (1e3 * t, v))
+    intake = admitted([slow, sound[1]], bench)
+    assert [r.name for r in intake.recordings] == ['free']
+    with pytest.raises(RecordingError, match=r'contact: too slow: .* every 2 s; .*unit of time'):
+        admitted([slow], bench)
+
+
 def test_without_motion(bench, sound):
     rest = every_channel(sound[0], lambda t, v: (t, np.full_like(v, v[0])))
     assert 'contact: without motion' in admitted([rest, sound[1]], bench).left_out[0]

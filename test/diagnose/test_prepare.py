@@ -143,6 +143,13 @@ def test_no_fit_sees_what_is_held_out(bench, pressed, free):
         assert 0.1 < held.sum() / whole.sum() < 0.4
 
 
+def test_of_the_shortest_recording_something_is_held_out(bench, free):
+    [segment] = prepared([free], bench).whole.rollouts.segments
+    brief = replace(segment, time=np.linspace(0.0, 1.2, len(segment.time)))
+    [held] = held_out([brief])
+    assert 0.1 < held.mean() < 0.4
+
+
 def test_of_many_recordings_whole_ones_are_held_out(bench, free):
     [segment] = prepared([free], bench).whole.rollouts.segments
     masks = held_out([segment] * 8)

@@ -48,6 +48,14 @@ def test_what_is_only_likely_is_said_to_have_its_part_in_the_shrink(case):
     assert 'instrument.yaml has it' in ' '.join(summary(case('unexplained')[0]).split())
 
 
+def test_a_gap_that_guessed_numbers_close_is_said_with_both(case):
+    diagnosis, _ = case('no_gap')
+    wide = diagnosis.gap[0].model_copy(update={'before': 14.0 * diagnosis.gap[0].noise_floor})
+    text = headline(diagnosis.model_copy(update={'gap': (wide, *diagnosis.gap[1:])}))
+    assert text.startswith('No gap that has a cause')
+    assert 'is off by 14 noise deviations, and by 1' in text.replace('\u00a0', ' ')
+
+
 def test_doubtful_cause_does_not_explain(case):
     unexplained, _ = case('unexplained')
     doubtful = case('one_cause')[0].causes[0].model_copy(update={'probability': 0.3})

@@ -69,13 +69,16 @@ def admitted(recordings: Sequence[Recording], instrument: Instrument) -> Intake:
         before = len(present)
         present, sentences = step(present, instrument)
         if not present:
-            raise RecordingError(_as_error(sentences, before))
+            raise RecordingError(_as_error(sentences, before, left_out))
         left_out += sentences
     return Intake(present, tuple(dict.fromkeys(left_out)))
 
 
-def _as_error(sentences: Sequence[str], recordings: int) -> str:
-    """Return the line that says why nothing is left."""
-    if recordings == 1:
-        return sentences[-1]
-    return f'{sentences[0]} (none of the {recordings} recordings can be used)'
+def _as_error(sentences: Sequence[str], recordings: int, left_out: Sequence[str]) -> str:
+    """Return the line that says why nothing is left, with what had gone of the same recording."""
+    said = sentences[-1] if recordings == 1 else sentences[0]
+    place = said.partition(': ')[0]
+    gone = [text for text in left_out if text.startswith(f'{place}: ')]
+    if gone:
+        said = f'{"; ".join(gone)}; then: {said}'
+    return said if recordings == 1 else f'{said} (none of the {recordings} recordings can be used)'

@@ -1,4 +1,4 @@
-"""Recordings that show nothing: too short, or without motion."""
+"""Recordings that show nothing: too short, too slow, or without motion."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
 SHORTEST = 1.0  # [s]
+SLOWEST = 0.1  # [s] between samples: slower, nothing of a drive's motion is seen
 FEWEST = 40  # samples of a motor's position
 STILL = 1e-3  # [rad]
 COUNTS = 5.0  # a motor that turns less than so many counts stands
@@ -20,7 +21,7 @@ COUNTS = 5.0  # a motor that turns less than so many counts stands
 
 def moving(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
     """
-    Leave out recordings that are too short or in which no motor moves.
+    Leave out recordings that are too short or too slow, or in which no motor moves.
 
     :param recordings: with every motor's position.
     :param instrument: the network.
@@ -37,6 +38,12 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
         return (
             f'too short: the motors are measured together for {max(end - start, 0.0):.2f} s, '
             f'{fewest} samples; record at least {SHORTEST:g} s and {FEWEST} samples, better 15 s'
+        )
+    between = max(float(np.median(np.diff(recording[name].time))) for name in names)
+    if between > SLOWEST:
+        return (
+            f'too slow: the motors are measured every {between:.3g} s; record at least 50 samples '
+            'a second, or say the unit of time on import, where it is not seconds'
         )
     sensors = {s.channel: s for s in instrument.sensors}
     if not any(turned(recording[name], sensors.get(name)) for name in names):
