@@ -249,13 +249,9 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
     rows: list[FloatArray] = []
     pushed = list(segment.pushed)
     inputs: set[str] = set()
-    contacts = {c.name: c for c in instrument.contacts}
-    for sensor in instrument.sensors:
-        if sensor.kind not in ('contact_force', 'contact_torque'):
-            continue
+    for sensor, levers in _loads(instrument):
         if sensor.channel not in recording:
             continue
-        contact = contacts[sensor.of]
         load = _motion(
             thinned(recording[sensor.channel]),
             sensor,
@@ -263,12 +259,11 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
             segment.period,
             len(segment.time),
         )
-        arm = contact.arm if sensor.kind == 'contact_force' else 1.0
         inputs.add(sensor.channel)
-        for pulley, ratio in contact.route.items():
+        for pulley, lever in levers.items():
             if pulley not in segment.prescribed and pulley not in pushed:
                 pushed.append(pulley)
-                rows.append(-arm * ratio * load)
+                rows.append(lever * load)
     if not rows:
         return None
     driving = segment.motion.value
@@ -281,3 +276,28 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
         contacts=(),
         pushed=tuple(pushed),
     )
+
+
+def pressing(instrument: Instrument, pulley: str) -> tuple[int, float]:
+    """
+    Return whose reading acts on a pulley as a known load.
+
+    :param instrument: the network.
+    :param pulley: one that no motor turns.
+    :return: the number of the sensor, and the torque on the pulley by its reading.
+    """
+    return next(
+        (instrument.sensors.index(sensor), levers[pulley])
+        for sensor, levers in _loads(instrument)
+        if pulley in levers
+    )
+
+
+def _loads(instrument: Instrument) -> Iterator[tuple[Sensor, dict[str, float]]]:
+    """Yield the sensors of loads, each with the torque on pulleys by its reading."""
+    contacts = {c.name: c for c in instrument.contacts}
+    for sensor in instrument.sensors:
+        if sensor.kind in ('contact_force', 'contact_torque'):
+            contact = contacts[sensor.of]
+            arm = contact.arm if sensor.kind == 'contact_force' else 1.0
+            yield sensor, {pulley: -arm * ratio for pulley, ratio in contact.route.items()}

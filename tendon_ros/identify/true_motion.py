@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.segment import Segment
+from tendon_ros.identify.segment import pressing, Segment
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
@@ -15,7 +15,7 @@ FloatArray = NDArray[np.float64]
 
 def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> Signals:
     """
-    Return what drove the rig: motions that encoders saw and torques that motors reported, mended.
+    Return what drove the rig, mended: motions seen, torques reported and loads measured.
 
     :param instrument: the network.
     :param numbers: after its effects.
@@ -23,31 +23,42 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
     :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.
     """
     motion = segment.motion
-    value, slope = motion.value, motion.slope
+    value, slope = motion.value.copy(), motion.slope.copy()
     for row, pulley in enumerate(segment.prescribed):
         for q, sensor in enumerate(instrument.sensors):
-            if sensor.kind != 'angle' or sensor.of != pulley:
-                continue
-            gain, offset = numbers['sensor_gain'][q], numbers['sensor_offset'][q]
-            late = numbers['sensor_delay'][q]
-            if gain != 1.0 or offset != 0.0 or late != 0.0:
-                value, slope = value.copy(), slope.copy()
-                if late != 0.0:
-                    value[row] = _earlier(value[row], late / motion.step)
-                    slope[row] = _earlier(slope[row], late / motion.step)
-                value[row] = (value[row] - offset) / gain
-                slope[row] = slope[row] / gain
-            break
+            if sensor.kind == 'angle' and sensor.of == pulley:
+                _mend(value[row], slope[row], numbers, q, motion.step)
+                break
     for row, pulley in enumerate(segment.pushed, start=len(segment.prescribed)):
         motors = [j for j, m in enumerate(instrument.motors) if m.pulley == pulley]
         for j in motors:
             gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
             limit = numbers['motor_limit'][j]
             given = gain * value[row] + bias
-            value, slope = value.copy(), slope.copy()
             value[row] = np.clip(given, -limit, limit)
             slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
+        if not motors:
+            q, lever = pressing(instrument, pulley)
+            _mend(value[row], slope[row], numbers, q, motion.step, lever)
     return Signals(value, slope, 0.0, motion.step)
+
+
+def _mend(
+    value: FloatArray,
+    slope: FloatArray,
+    numbers: Numbers,
+    sensor: int,
+    step: float,
+    lever: float = 1.0,
+) -> None:
+    """Turn what a sensor read, times a lever, into what was there; both arrays are changed."""
+    gain, offset = numbers['sensor_gain'][sensor], numbers['sensor_offset'][sensor]
+    late = numbers['sensor_delay'][sensor]
+    if late != 0.0:
+        value[:] = _earlier(value, late / step)
+        slope[:] = _earlier(slope, late / step)
+    value[:] = (value - lever * offset) / gain
+    slope[:] = slope / gain
 
 
 def _earlier(value: FloatArray, steps: float) -> FloatArray:

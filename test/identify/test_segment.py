@@ -9,7 +9,10 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.segment import loaded, reading_error, segment_of
+from tendon_ros.identify.true_motion import true_motion
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.laws import modified
 
 ANGLE, TORQUE = 'actuator/pulley_body/position', 'actuator/pulley_body/effort'
 
@@ -120,6 +123,20 @@ def test_a_measured_load_turns_into_a_torque_on_its_pulley(bench, sound_run):
     # the instrument pushes with 2 N at 50 mm, so the tip is pushed back
     assert pushed.motion.value[-1] == pytest.approx(-0.1, abs=1e-6)
     assert 'load_cell/force' not in {m.sensor.channel for m in pushed.measured}
+
+
+def test_a_load_that_pushes_is_what_the_cell_read_less_its_faults(bench, sound_run):
+    cell = sound_run['load_cell/force']
+    pressed = sound_run.with_channels([Channel(cell.name, cell.time, 0.0 * cell.value + 2.0)])
+    segment = segment_of(bench, pressed, bin_length([pressed], bench))
+    pushed = loaded(bench, pressed, segment)
+    effects = [
+        EffectUse('load_cell_gain', 'load_cell', {'gain': 1.25}),
+        EffectUse('load_cell_bias', 'load_cell', {'force': -0.5}),
+    ]
+    driven = true_motion(bench, modified(bench, effects), pushed)
+    assert driven.value[-1] == pytest.approx(-0.05 * (2.0 + 0.5) / 1.25, abs=1e-6)
+    np.testing.assert_array_equal(driven.value[:-1], pushed.motion.value[:-1])
 
 
 def test_without_a_load_nothing_pushes(bench, sound_run):
