@@ -14,6 +14,7 @@ import numpy as np
 
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
+from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
@@ -114,10 +115,12 @@ class Search:
                 if state is not found.start:
                     screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
-                grown = self._grown(found, state, screen, proposals)
-                if turn == 0 and astray(self.problem, found.start, grown):
-                    others = self._from_the_file(found), self._without_sign(found)
-                    grown = better(self.problem, grown, *others)
+                grown = self._of_many(found) if turn == 0 else None
+                if grown is None:
+                    grown = self._grown(found, state, screen, proposals)
+                    if turn == 0 and astray(self.problem, found.start, grown):
+                        others = self._from_the_file(found), self._without_sign(found)
+                        grown = better(self.problem, grown, *others)
                 turn += 1
             if grown is not None:
                 state = grown
@@ -168,6 +171,16 @@ class Search:
             if alone is not None and self._believed(found, found.start, alone):
                 grown = better(self.problem, grown, alone)
         return grown
+
+    def _of_many(self, found: Found) -> Fit | None:
+        """Return what is needed of all that usually is there, if guesses ask for it."""
+        if not far_off(self.problem, found.start):
+            return None
+        fit = thinned_out(self._steps, found.start, MOST)
+        # where it leaves much, it is something else that is behind it
+        if fit is None or hopeless(self.problem, found.start, fit):
+            return None
+        return fit if self._believed(found, found.start, fit) else None
 
     def _alone(self, state: Fit, proposals: Sequence[Proposal]) -> Fit | None:
         """Return the state with the one cause more that fits best; None without proposals."""

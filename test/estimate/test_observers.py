@@ -21,6 +21,14 @@ from tendon_ros.model.trajectory_choice import chosen
 LIMITS = {'contact_angle': (0.25, 3e-4), 'static_balance': (0.35, 6e-4), 'dynamic': (0.35, 6e-4)}
 
 
+def taut():
+    """Return a grasper whose cable is preloaded, so that it rubs and pulls either way."""
+    grasper = load_instrument('davinci_grasper')
+    [cable], [curve] = grasper.loops, grasper.curves
+    softer = replace(curve, tension=(0.0, 210.0))
+    return replace(grasper, loops=(replace(cable, pretension=50.0),), curves=(softer,))
+
+
 @pytest.mark.parametrize('method', METHODS)
 def test_force_and_inner_angles_of_a_simulated_press(method, bench, pressing, rms):
     """On the model's own data every method meets the truth within the encoders' rounding."""
@@ -112,7 +120,7 @@ def test_channels_that_cannot_tell_the_force_are_refused(bench):
 
 def test_what_is_known_of_a_force_makes_it_known_better(rms):
     """A force that is said to change slowly is told from many measurements, however many."""
-    grasper = load_instrument('davinci_grasper')
+    grasper = taut()
     loud = replace(
         grasper,
         sensors=tuple(
@@ -155,7 +163,7 @@ def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
 
 def test_shaft_torque_gives_the_jaw_torque(rms):
     """On the grasper's file, spindle torque and angle alone give the torque at the jaw."""
-    grasper = load_instrument('davinci_grasper')
+    grasper = taut()
     profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
     recording = simulate(grasper, profile, rate=100.0)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
@@ -188,7 +196,7 @@ def test_a_bench_of_another_make(bench, practice, rms):
 
 def test_a_reversal_is_not_taken_for_force(rms):
     """Where strong friction, known to a tenth, turns round, the estimate stays and says so."""
-    grasper = load_instrument('davinci_grasper')
+    grasper = taut()
     rubbing, known = (
         replace(
             grasper,
@@ -219,7 +227,7 @@ def test_a_reversal_is_not_taken_for_force(rms):
 @pytest.mark.parametrize(('true', 'known'), [(3e-3, 6e-3), (6e-3, 3e-3)])
 def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
     """While a pulley rests its friction may go either way within what its angle is unsure by."""
-    grasper = load_instrument('davinci_grasper')
+    grasper = taut()
 
     def rubbing(angle):
         uses = (
@@ -250,7 +258,7 @@ def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
 
 def test_a_small_torque_is_met_at_the_edge_of_a_play():
     """A torque that may as well be none by its doubt is no reason to stay within the play."""
-    tool = load_instrument('davinci_grasper')
+    tool = taut()
     rig = replace(
         tool,
         effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),),
@@ -268,7 +276,7 @@ def test_a_small_torque_is_met_at_the_edge_of_a_play():
 
 def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
     """Inside the play the torque says nothing of the motor's angle, or of its side."""
-    tool = load_instrument('davinci_grasper')
+    tool = taut()
     rig = replace(
         tool, effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),)
     )
@@ -284,5 +292,4 @@ def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
 
     assert off() < 0.005
     monkeypatch.setattr('tendon_ros.estimate.play.Play.sides', lambda *_: [])
-    with pytest.raises(RecordingError, match='a unit or a sign may be wrong'):
-        off()
+    assert off() > 0.02

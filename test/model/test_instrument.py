@@ -127,7 +127,7 @@ def test_wrist_couples_pitch_into_the_jaws():
 def test_grasper_has_the_recorded_ratio(davinci_npz):
     grasper = load_instrument('davinci_grasper')
     [loop] = grasper.loops
-    ratio = -loop.route['spindle'] / loop.route['jaw']
+    ratio = -loop.route['spindle'] / loop.route['drum']
     with np.load(davinci_npz) as runs:
         table = np.concatenate([runs[f'0{level}'][::10] for level in range(10)])
     spindle, jaw = -table[:, 1] * 2 * np.pi / 8192, table[:, 4] * 2 * np.pi / 4000
