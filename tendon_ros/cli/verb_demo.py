@@ -148,5 +148,5 @@ def _real(path: Path) -> RealTool:
             progress((n + 1) / len(keys))
     if looked_at is None:
         raise RecordingError(f'{path}: no runs in it')
-    route = grasper.loops[0].route
-    return RealTool(scores, looked_at, abs(route['spindle'] / route['jaw']))
+    spindle, drum = grasper.loops[0].route.values()
+    return RealTool(scores, looked_at, abs(spindle / drum))

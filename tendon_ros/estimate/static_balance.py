@@ -221,9 +221,14 @@ class StaticBalanceObserver(Observer):
         """Find free angles (in place) and force; return the force and both's covariance."""
         begun = angle.copy()
         cost, force, rows, by_fixed = self._searched(angle, begun, measurement)
-        within = self._play.inside(
-            angle
-        )  # where torques change with no angle: at its edge they do
+        if cost > DOUBTFUL**2 * len(self._weight):  # held at the edge of slack, perhaps
+            across = angle.copy()
+            again = self._searched(across, begun, measurement, bold=True)
+            if again[0] < cost:
+                cost, force, rows, by_fixed = again
+                angle[:] = across
+        # where torques change with no angle: at its edge they do
+        within = self._play.inside(angle)
         if within or cost > DOUBTFUL**2 * len(self._weight):
             for across in self._play.sides(angle):
                 again = self._searched(across, begun, measurement)
@@ -238,9 +243,14 @@ class StaticBalanceObserver(Observer):
         return force, covariance + through @ through.T
 
     def _searched(
-        self, angle: FloatArray, begun: FloatArray, measurement: Measurement
+        self, angle: FloatArray, begun: FloatArray, measurement: Measurement, *, bold: bool = False
     ) -> tuple[float, float, FloatArray, FloatArray]:
-        """Descend from angles (in place): cost, force, slopes by unknowns and measured angles."""
+        """
+        Descend from angles (in place): cost, force, slopes by unknowns and measured angles.
+
+        Where a cable goes slack a step that only goes down ends at once; Newton's own, taken
+        boldly, is over it.
+        """
         force = self._force
         start = begun[self._free]
         cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
@@ -256,7 +266,7 @@ class StaticBalanceObserver(Observer):
                 trial = angle.copy()
                 trial[self._free] += part * move[:-1]
                 after = self._weighed(trial, start, force + part * move[-1], measurement)
-                if after[0] < cost:
+                if after[0] < cost or bold:
                     break
                 part *= 0.4
             else:
