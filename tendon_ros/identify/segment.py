@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import drives
+from tendon_ros.identify.loads import loads
 from tendon_ros.identify.means import binned
 from tendon_ros.identify.smoothing import at_rest, smoothed
 from tendon_ros.model.instrument import Instrument, Sensor
@@ -249,7 +250,7 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
     rows: list[FloatArray] = []
     pushed = list(segment.pushed)
     inputs: set[str] = set()
-    for sensor, levers in _loads(instrument):
+    for sensor, levers in loads(instrument):
         if sensor.channel not in recording:
             continue
         load = _motion(
@@ -276,28 +277,3 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
         contacts=(),
         pushed=tuple(pushed),
     )
-
-
-def pressing(instrument: Instrument, pulley: str) -> tuple[int, float]:
-    """
-    Return whose reading acts on a pulley as a known load.
-
-    :param instrument: the network.
-    :param pulley: one that no motor turns.
-    :return: the number of the sensor, and the torque on the pulley by its reading.
-    """
-    return next(
-        (instrument.sensors.index(sensor), levers[pulley])
-        for sensor, levers in _loads(instrument)
-        if pulley in levers
-    )
-
-
-def _loads(instrument: Instrument) -> Iterator[tuple[Sensor, dict[str, float]]]:
-    """Yield the sensors of loads, each with the torque on pulleys by its reading."""
-    contacts = {c.name: c for c in instrument.contacts}
-    for sensor in instrument.sensors:
-        if sensor.kind in ('contact_force', 'contact_torque'):
-            contact = contacts[sensor.of]
-            arm = contact.arm if sensor.kind == 'contact_force' else 1.0
-            yield sensor, {pulley: -arm * ratio for pulley, ratio in contact.route.items()}

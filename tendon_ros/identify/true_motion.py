@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.segment import pressing, Segment
+from tendon_ros.identify.loads import pressing
+from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
