@@ -47,13 +47,19 @@ WHOLE = 6  # recordings from which on whole ones are held out
 
 @dataclass(frozen=True)
 class Prepared:
-    """The problem of the fitted bins, that of those held out, and of both."""
+    """
+    The problem of the fitted bins, that of those held out, and of both.
+
+    ``shift``: by how many blocks what is held out has moved; ``looser``: times what is usual that
+    numbers may be off of which the file does not say how well it knows them.
+    """
 
     problem: Problem
     held: Problem
     whole: Problem
     noise: Noise
     shift: int = 0
+    looser: float = 1.0
 
     def heard_again(self, model: Model) -> Prepared:
         """
@@ -75,7 +81,7 @@ class Prepared:
             )
             for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.like(segments), self.noise, self.shift)
+        return _problems(rollouts.like(segments), self.noise, self.shift, self.looser)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -99,8 +105,16 @@ class Prepared:
         :param shift: by how many blocks to move them.
         :return: the problems.
         """
-        rollouts = self.whole.rollouts
-        return _problems(rollouts, self.noise, shift)
+        return _problems(self.whole.rollouts, self.noise, shift, self.looser)
+
+    def loosened(self, looser: float) -> Prepared:
+        """
+        Return the same with other tolerances where the file states none.
+
+        :param looser: times what is usual.
+        :return: the problems.
+        """
+        return _problems(self.whole.rollouts, self.noise, self.shift, looser)
 
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
@@ -120,7 +134,7 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     noise = noise_of_counts(instrument, segments, recordings, predicted)
     segments = noise.given(segments, predicted)
     tolerance = loosest(instrument, segments, predicted)
-    return _problems(Rollouts(instrument, segments, jobs, tolerance), noise, 0)
+    return _problems(Rollouts(instrument, segments, jobs, tolerance), noise)
 
 
 def _thinned(recording: Recording, instrument: Instrument) -> Recording:
@@ -131,17 +145,18 @@ def _thinned(recording: Recording, instrument: Instrument) -> Recording:
     return replace(recording, channels=channels)
 
 
-def _problems(rollouts: Rollouts, noise: Noise, shift: int) -> Prepared:
+def _problems(rollouts: Rollouts, noise: Noise, shift: int = 0, looser: float = 1.0) -> Prepared:
     segments = rollouts.segments
     usable = [s.time > SETTLING for s in segments]
     held = held_out(segments, shift)
-    moving = tolerances(rollouts.instrument)
+    moving = tolerances(rollouts.instrument, looser)
     return Prepared(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, usable),
         noise,
         shift,
+        looser,
     )
 
 

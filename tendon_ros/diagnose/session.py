@@ -31,6 +31,7 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.spread import known_words, loose
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
@@ -38,6 +39,8 @@ from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
 
 Report = Callable[[str, float], None]
+
+LOOSENED = 2  # times that the numbers of a file may turn out to be less well known than supposed
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,7 @@ def diagnose(
             *intake.left_out,
             *said_of_torque(instrument),
             *([early_words(held.early)] if held.early else []),
+            *([known_words(ready.looser)] if ready.looser > 1.0 else []),
         ),
     )
     evidence = Evidence(
@@ -173,4 +177,13 @@ def _searched(
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
         found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
+    # numbers are no causes where the file's others are off as far
+    for _ in range(LOOSENED):
+        wider = loose(ready, found)
+        if wider is None:
+            break
+        report('looking again: the numbers of the file are not that well known', 0.0)
+        begun = wider.begun(ready, found)
+        ready = ready.loosened(wider.looser)
+        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
     return ready, found

@@ -31,7 +31,8 @@ class Tolerance:
     """
     One number of the file that may move: the effect that moves it, and how far it may.
 
-    ``given``: the file has this effect there already, and its parameter moves.
+    ``given``: the file has this effect there already, and its parameter moves. ``supposed``: the
+    file does not say how well it knows the number.
     """
 
     effect: str
@@ -40,6 +41,7 @@ class Tolerance:
     parameter: str
     axis: Axis
     given: bool = False
+    supposed: bool = False
 
     @property
     def guessed(self) -> bool:
@@ -68,11 +70,12 @@ class Tolerance:
         )
 
 
-def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
+def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, ...]:
     """
     Return what may move in an instrument.
 
     :param instrument: the network.
+    :param looser: times what is usual that numbers are off of which the file says nothing.
     :return: its inertias, dampings, preloads and stiffnesses, with the tolerance of the file or,
         where it names none, that of a careful measurement; torque constants, contact positions
         and parameters of the file's effects where it gives a tolerance.
@@ -83,6 +86,7 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
     taken = {(t.effect, t.place, t.parameter) for t in found}
 
     def movable(effect: str, place: str, quantity: str, axis: Axis | None) -> None:
+        supposed = f'{place}.{quantity}' not in stated
         parameter = _moving(effect, quantity)
         if axis is None or (effect, place, parameter.name) in taken:
             return
@@ -91,16 +95,18 @@ def tolerances(instrument: Instrument) -> tuple[Tolerance, ...]:
             axis = _about(axis, given[parameter.name], parameter.neutral == 1.0)
         # beyond what the effect can be, nothing can be computed
         within = _within(axis, parameter)
-        found.append(Tolerance(effect, place, quantity, parameter.name, within, given is not None))
+        found.append(
+            Tolerance(effect, place, quantity, parameter.name, within, given is not None, supposed)
+        )
 
     for effect, place, quantity, usual in _factors(instrument):
         axis = _factor(
-            quantity, stated.get(f'{place}.{quantity}', usual), _moving(effect, quantity)
+            quantity, stated.get(f'{place}.{quantity}', looser * usual), _moving(effect, quantity)
         )
         movable(effect, place, quantity, axis)
     for pulley in instrument.pulleys:
         place = f'pulley_{pulley.name}'
-        spread = stated.get(f'{place}.damping', DAMPING)
+        spread = stated.get(f'{place}.damping', looser * DAMPING)
         unit, least = 'N m s/rad', -pulley.damping  # less would drive
         axis = _addition('damping', unit, pulley.damping, spread, SOME_DAMPING, least)
         movable('viscous_friction', place, 'damping', axis)
