@@ -16,7 +16,7 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.parts import is_part, plain, widened
-from tendon_ros.diagnose.rivals import bared, close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
@@ -221,6 +221,11 @@ class Challenge:
         """
         close = {r.candidate for r in close_ones(self._problem, state, without, rivals)}
         far = [c for c in halfway(state, without, rivals) if c not in close][:BEGUN_ANEW]
+        # guesses that have moved to do without one friction hide that another does as well
+        if any(t.guessed for t in self._problem.tolerances):
+            far += [
+                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
+            ]
         rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
         if rest is None:
             return []

@@ -1,5 +1,5 @@
 """
-All at once: friction, play and springs wherever they can be, as a place to begin from.
+All at once: friction, play, springs and zeros wherever they can be, as a place to begin from.
 
 Where inertia, stiffness and preload of a mechanism are guesses, the first cause that is found
 drags them to where it does best alone, and whatever comes next is judged from there. Every real
@@ -12,8 +12,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 import math
 
-import numpy as np
-
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.worth import needed
 from tendon_ros.identify.candidate import Candidate
@@ -22,26 +20,35 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.worths import growth
 
 #: what every real transmission has; laws that hold these are tried later, in their place
-USUAL = ('coulomb_friction', 'tension_friction', 'backlash', 'joint_spring')
+USUAL = ('coulomb_friction', 'tension_friction', 'backlash', 'joint_spring', 'load_cell_bias')
+#: those of them that are linear: they need no size to leave a trace
+LINEAR = ('joint_spring', 'load_cell_bias')
+#: parts of what is typical that the others have at first: of several ways one may end early
+BEGINNINGS = (1.0, 0.3)
 #: rounds of the fit of all of it: from typical sizes the way is long
 FAR = 12
 #: rounds of fits that tell what is missed, with derivatives as they are, and of those with less
 GLANCE, ROUNDS = 4, 8
-#: causes that each may be what is missed least
-DOUBTED = 4
 
 
-def everywhere(candidates: Sequence[Candidate], model: Model) -> Model:
+def everywhere(candidates: Sequence[Candidate], model: Model, part: float) -> Model:
     """
-    Return a model with all that transmissions usually have, as large as is typical.
+    Return a model with all that transmissions usually have.
 
     :param candidates: all that may be named.
     :param model: where the numbers of the file are.
+    :param part: of what is typical, for sizes of what has a threshold.
     :return: the model with more causes.
     """
     for candidate in candidates:
-        if candidate.effect in USUAL:
-            model = model.joined(candidate, {p.name: p.typical for p in candidate.parameters})
+        # what a load cell reads is what pushes: its zero is not to be had beside all else
+        if candidate.effect in USUAL and candidate.place != 'load_cell':
+            sized = 0.0 if candidate.effect in LINEAR else part
+            values = {
+                p.name: p.typical if p.is_shape else p.neutral + sized * (p.typical - p.neutral)
+                for p in candidate.parameters
+            }
+            model = model.joined(candidate, values)
     return model
 
 
@@ -55,14 +62,16 @@ def thinned_out(steps: Steps, start: Fit, most: int) -> Fit | None:
     :return: the fit; None where the model with all of it diverges.
     """
     problem = steps.problem
-    state = problem.fitted(everywhere(steps.candidates, problem.empty), rounds=FAR, accuracy=1e-2)
+    begun = [everywhere(steps.candidates, problem.empty, part) for part in BEGINNINGS]
+    rough = steps.pool.map(lambda m: problem.fitted(m, rounds=FAR, accuracy=1e-2), begun)
+    state = min(rough, key=lambda fit: fit.cost)
     while math.isfinite(state.cost):
         least = needed(problem, start, state)
         smaller = _idle_dropped(problem, state, least)
         if smaller is None and len(state.model.causes) > most:
-            smaller = _least_dropped(problem, state)
+            smaller = _least_dropped(steps, state)
         if smaller is None:
-            return steps.pruned(start, steps.settled(state.model))
+            return steps.settled(state.model)
         state = problem.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
     return None
 
@@ -91,11 +100,10 @@ def _idle_dropped(problem: Problem, state: Fit, least: float) -> Fit | None:
     return None
 
 
-def _least_dropped(problem: Problem, state: Fit) -> Fit | None:
+def _least_dropped(steps: Steps, state: Fit) -> Fit | None:
     """Return a state without the cause that is missed least."""
-    grows = growth(problem, state)
-    order = np.argsort([grows([k]) for k in range(len(state.model.causes))])
-    trials = [_glanced(problem, state, [k]) for k in order[:DOUBTED].tolist()]
+    each = range(len(state.model.causes))
+    trials = steps.pool.map(lambda k: _glanced(steps.problem, state, [k]), each)
     return min(trials, key=lambda fit: fit.cost, default=None)
 
 

@@ -37,7 +37,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument remembers a disturbance
-#: part of the contact force's power that a wall of the file may get wrong and be there after all
+#: part of what the contact force has against no wall that a wall of the file may leave
 NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
 FELT = 0.8
@@ -184,16 +184,17 @@ def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
 def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> Segment:
     """Return a segment with what the tip met, and the pose from which the motion began."""
     names = segment.contacts
-    best, least, force = segment, np.inf, 0.0
+    best, least, force, free = segment, np.inf, 0.0, 0.0
     for there in product((True, False), repeat=min(len(names), 3)):
         kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
         trial = _posed(instrument, replace(segment, contacts=kept))
         off = _misfits(instrument, trial)
         misfit = sum(off.values())
+        # the last is that without a wall; a cell whose bias is in the file reads something there
+        free = max((off[c] for c in off if c.startswith('load_cell/')), default=0.0)
         if misfit < 0.999 * least:
-            best, least = trial, misfit
-            force = max((off[c] for c in off if c.startswith('load_cell/')), default=0.0)
-    if force > NO_WALL:
+            best, least, force = trial, misfit, free
+    if force > NO_WALL * free:
         pushed = loaded(instrument, recording, segment)
         if pushed is not None and pushed.measured:
             pushed = _posed(instrument, pushed)

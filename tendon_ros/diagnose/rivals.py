@@ -9,6 +9,7 @@ import numpy as np
 
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Rival
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.worths import worths
@@ -28,6 +29,18 @@ def halfway(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate
     """
     half = 0.5 * (state.cost + without.cost)
     return [r.candidate for r in rivals if r.fit.cost < half]
+
+
+def alike(one: Candidate, two: Candidate) -> bool:
+    """
+    Return whether two candidates are different dry frictions of one pulley.
+
+    :param one: a candidate.
+    :param two: another.
+    :return: whether.
+    """
+    dry = all(find(c.effect).hook == 'budget' for c in (one, two))
+    return dry and one.place == two.place and one.effect != two.effect
 
 
 def bared(problem: Problem, state: Fit, k: int) -> Fit | None:

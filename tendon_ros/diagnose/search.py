@@ -35,7 +35,7 @@ from tendon_ros.identify.screening import Proposal, Screen, Seen
 from tendon_ros.identify.subset import Member, Subsets
 
 #: causes; and from how many on each has to explain most of some channel, or the search goes astray
-MOST, MANY = 8, 5
+MOST, MANY = 10, 5
 AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
 #: part of the cost that a challenge has to leave for another look where much is left

@@ -39,5 +39,5 @@ EFFECT = Effect(
         ),
     ),
     modify=modify,
-    sensors=('contact_force', 'contact_torque'),
+    sensors=('contact_force', 'contact_torque', 'loop_torque'),
 )
