@@ -11,7 +11,6 @@ import numpy as np
 
 from tendon_ros.estimate.channels import (
     angle_channel,
-    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -36,7 +35,7 @@ class ContactAngleObserver(Observer):
     """
 
     def __init__(self, instrument: Instrument, *, engine: str = 'auto') -> None:
-        super().__init__()
+        super().__init__(instrument)
         self._instrument = instrument
         self._operating = operating_force(instrument)
         self._contact = instrument.contacts.index(self._operating.contact)
@@ -46,7 +45,7 @@ class ContactAngleObserver(Observer):
         self._runner = Runner(instrument, arrays, engine)
         self._statics = Statics(instrument, engine=engine)
         encoders = sensors_of(instrument, ('angle',))
-        self._sigma = np.array([doubt(encoders[name]) for name in self.needs])
+        self._sigma = np.array([self._doubt(encoders[name]) for name in self.needs])
         self._reset()
 
     def _reset(self) -> None:

@@ -14,7 +14,6 @@ from scipy.linalg import expm
 
 from tendon_ros.estimate.channels import (
     angle_channel,
-    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -49,7 +48,7 @@ class KalmanObserver(Observer):
     def __init__(
         self, instrument: Instrument, *, wander: float | None = None, engine: str = 'auto'
     ) -> None:
-        super().__init__()
+        super().__init__(instrument)
         self._wander = FORCE_WANDER if wander is None else wander
         self._instrument = instrument
         self._operating = operating_force(instrument)
@@ -58,16 +57,14 @@ class KalmanObserver(Observer):
         self._efforts = tuple(f'actuator/pulley_{name}/effort' for name in driven)
         self.needs = (*self._positions, *self._efforts)
         known = sensors_of(instrument, ('angle', 'motor_torque'))
-        self._variance = np.array([doubt(known[name]) ** 2 for name in self._positions])
-        self._torque_variance = np.array([doubt(known[name]) ** 2 for name in self._efforts])
+        self._variance = np.array([self._doubt(known[name]) ** 2 for name in self._positions])
+        self._torque_variance = np.array([self._doubt(known[name]) ** 2 for name in self._efforts])
         free = without_contacts(instrument)
         everyone = {name: row for row, name in enumerate(instrument.pulley_names)}
         arrays = arrays_of(free, pushed=everyone)
         self._runner = Runner(free, arrays, engine)
         self._linearisation = Linearisation(self._runner.structure)
         at = arrays.structure
-        self._gain = arrays.m[at['MOTOR_GAIN'] : at['MOTOR_GAIN'] + at['U']]
-        self._bias = arrays.m[at['MOTOR_BIAS'] : at['MOTOR_BIAS'] + at['U']]
         order = np.array(at.order)
         self._inertia = np.empty(len(order))
         self._inertia[order] = arrays.m[at['INERTIA'] : at['INERTIA'] + at['N']]
@@ -116,7 +113,7 @@ class KalmanObserver(Observer):
     def _predict(self, effort: FloatArray, gap: float) -> None:
         n = self._n
         push = self._operating.torque * self._force
-        push[self._driven] += self._gain * effort + self._bias
+        push[self._driven] += effort
         self._runner.place(self._angle, self._velocity)
         row = self._runner.glide(self._runner.time + gap, Signals.held(push))
         self._angle, self._velocity = row.angle[0].copy(), row.velocity[0].copy()

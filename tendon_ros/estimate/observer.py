@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tendon_ros.base.errors import RecordingError
+from tendon_ros.estimate.channels import doubt
+from tendon_ros.estimate.readings import Readings
+from tendon_ros.model.instrument import Instrument, Sensor
 
 
 @dataclass(frozen=True)
@@ -40,14 +43,18 @@ class Observer(ABC):
     Turns measurements into estimates, in the order of their stamps.
 
     Subclasses name the channels that they need, and never see a measurement that lacks one, is not
-    finite, or does not come after the one before: :meth:`update` refuses those first.
+    finite, or does not come after the one before: :meth:`update` refuses those first. What they
+    see is what was there, by all that the instrument's file says of its sensors and motors.
+
+    :param instrument: the network.
     """
 
     #: channels that must be in every measurement
     needs: tuple[str, ...]
 
-    def __init__(self) -> None:
+    def __init__(self, instrument: Instrument) -> None:
         self._last_ns: int | None = None
+        self._readings = Readings(instrument)
 
     def update(self, measurement: Measurement) -> Estimate:
         """
@@ -74,7 +81,8 @@ class Observer(ABC):
         gap = 0.0
         if self._last_ns is not None:
             gap = (measurement.stamp_ns - self._last_ns) * 1e-9
-        estimate = self._update(measurement, gap)
+        true = Measurement(measurement.stamp_ns, self._readings.truth(measurement.values))
+        estimate = self._update(true, gap)
         self._last_ns = measurement.stamp_ns
         return estimate
 
@@ -82,6 +90,10 @@ class Observer(ABC):
         """Forget everything: the next measurement is the first."""
         self._last_ns = None
         self._reset()
+
+    def _doubt(self, sensor: Sensor) -> float:
+        """Return how far what a sensor measures and the model may disagree."""
+        return doubt(sensor) * self._readings.slope(sensor.channel)
 
     @abstractmethod
     def _update(self, measurement: Measurement, gap: float) -> Estimate:

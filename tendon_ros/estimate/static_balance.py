@@ -21,7 +21,6 @@ from scipy.linalg.lapack import dgels
 
 from tendon_ros.base.errors import InstrumentError, listed, RecordingError
 from tendon_ros.estimate.channels import (
-    doubt,
     estimated_angles,
     operating_force,
     sensors_of,
@@ -75,7 +74,7 @@ class StaticBalanceObserver(Observer):
         wander: float | None = None,
         engine: str = 'auto',
     ) -> None:
-        super().__init__()
+        super().__init__(instrument)
         self._instrument = instrument
         self._operating = operating_force(instrument)
         known = sensors_of(instrument, ('angle', 'motor_torque', 'loop_torque'))
@@ -100,7 +99,7 @@ class StaticBalanceObserver(Observer):
             )
         self._fixed = [i for _, i in self._angles]
         self._free = [i for i in range(len(instrument.pulleys)) if i not in self._fixed]
-        self._sigma_angle = np.array([doubt(known[name]) for name, _ in self._angles])
+        self._sigma_angle = np.array([self._doubt(known[name]) for name, _ in self._angles])
         self._statics = Statics(instrument, engine=engine)
         self._plan_rows()
         least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
@@ -142,7 +141,7 @@ class StaticBalanceObserver(Observer):
         self._reading_sign = np.ones(len(self._torques))
         for n, (_, sensor) in enumerate(self._torques):
             row = len(self._balanced) + n
-            self._weight[row] = 1.0 / doubt(sensor)
+            self._weight[row] = 1.0 / self._doubt(sensor)
             if sensor.kind == 'motor_torque':  # what the motor gives balances all the rest
                 self._on_pulleys[row, motors[sensor.of]] = 1.0
             else:  # the sensor reads the torque that the loop or coupling puts on the pulley

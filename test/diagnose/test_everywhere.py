@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.everywhere import everywhere, thinned_out, USUAL
+from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import everyone
@@ -13,14 +13,20 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument_file import load_instrument
 
 
-def test_all_that_transmissions_usually_have(bench):
-    candidates = everyone(bench, [s.channel for s in bench.sensors])
-    model = everywhere(candidates, Model((), (), {}, np.zeros(0)))
+@pytest.mark.parametrize('part', [1.0, 0.3])
+def test_all_that_transmissions_usually_have(part):
+    grasper = load_instrument('davinci_grasper')
+    candidates = everyone(grasper, [s.channel for s in grasper.sensors])
+    model = everywhere(candidates, Model((), (), {}, np.zeros(0)), part)
     places = {(c.effect, c.place) for c in model.causes}
-    assert places == {(c.effect, c.place) for c in candidates if c.effect in USUAL}
+    usual = {(c.effect, c.place) for c in candidates if c.effect in USUAL}
+    assert usual - places == {('load_cell_bias', 'load_cell')}
+    assert ('load_cell_bias', 'shaft_spindle') in places
     assert {effect for effect, _ in places} == set(USUAL)
     for k, cause in enumerate(model.causes):
-        assert model.values(k) == pytest.approx({p.name: p.typical for p in cause.parameters})
+        [size] = [p for p in cause.parameters if not p.is_shape and p.search != 'share']
+        first = 0.0 if cause.effect in LINEAR else part * size.typical
+        assert model.values(k)[size.name] == pytest.approx(first)
 
 
 def test_only_what_is_needed_stays(measured_on):

@@ -9,7 +9,10 @@ from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.prepare import held_out, prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.session import simulate
+from tendon_ros.model.trajectory_choice import chosen
 
 
 @pytest.fixture(scope='module')
@@ -77,6 +80,23 @@ def test_a_measured_load_pushes_where_no_wall_fits(bench, measured_on):
     assert segment.pushed == ('2',)
     left = ready.whole.left(ready.whole.empty)
     assert np.mean(left**2) < 2.0
+
+
+@pytest.mark.parametrize('bias', [0.0, 0.02])
+def test_a_known_bias_of_the_cell_is_no_reason_against_a_load(bias):
+    grasper = load_instrument('davinci_grasper')
+    held = EffectUse('joint_spring', 'pulley_jaw', {'stiffness': 0.04, 'rest': -1.0})
+    motion = chosen('multisine', grasper.motor_names, {'amplitude': '20 deg', 'duration': '4 s'})
+    run = simulate(replace(grasper, effects=(held,)), motion, rate=200.0)
+    jaw = run['pulley/pulley_jaw/position']
+    load = Channel('load_cell/torque', jaw.time, 0.04 * (jaw.value + 1.0) + bias)
+    channels = {s.channel for s in grasper.sensors}
+    kept = {n: c for n, c in run.channels.items() if n in channels or n.startswith('setpoint/')}
+    known = EffectUse('load_cell_bias', 'load_cell', {'force': bias})
+    run = replace(run, channels=kept).with_channels([load])
+    ready = prepared([run], replace(grasper, effects=(known,) if bias else ()))
+    [segment] = ready.whole.rollouts.segments
+    assert segment.pushed == ('jaw',)
 
 
 def test_noise_is_found_and_counts_are_part_of_it(bench, free):

@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.rivals import bared, close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.screening import Screen
 
@@ -72,3 +72,12 @@ def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, mea
     spring = screen.corrected(best).values
     assert spring['stiffness'] == pytest.approx(state.model.values(1)['torque'], rel=0.1)
     assert spring['rest'] == pytest.approx(state.model.values(1)['phase'], abs=0.01)
+
+
+def test_other_dry_frictions_of_one_pulley_are_alike():
+    other = Candidate('tension_friction', 'pulley_3')
+    assert alike(COULOMB, other)
+    assert not alike(COULOMB, COULOMB)
+    assert not alike(COULOMB, Candidate('tension_friction', 'pulley_L'))
+    assert not alike(COULOMB, WEIGHT)
+    assert not alike(WEIGHT, SPRING)

@@ -159,9 +159,11 @@ def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
         estimate_recording(Recording('cut', kept), build(bench, 'static_balance'))
 
 
-def test_shaft_torque_gives_the_jaw_torque(rms):
-    """On the grasper's file, spindle torque and angle alone give the torque at the jaw."""
-    grasper = taut()
+@pytest.mark.parametrize('bias', [0.0, 0.03])
+def test_shaft_torque_gives_the_jaw_torque(rms, bias):
+    """Spindle torque and angle alone give the torque at the jaw, whatever their sensor's zero."""
+    zero = EffectUse('load_cell_bias', 'shaft_spindle', {'force': bias})
+    grasper = replace(taut(), effects=(zero,))
     profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
     recording = simulate(grasper, profile, rate=100.0)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
