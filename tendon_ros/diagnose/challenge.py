@@ -10,21 +10,21 @@ from collections.abc import Sequence
 from itertools import combinations
 import math
 
+from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, excuses
 from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
-from tendon_ros.diagnose.parts import is_part, plain, widened
-from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved
+from tendon_ros.diagnose.parts import plain
+from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, UNTIMED
-from tendon_ros.identify.screening import Proposal, Screen, Seen
+from tendon_ros.identify.screening import Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
-BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
 REPLACED = 6  # causes at most that challenges replace
 CREEPING = 20  # rounds at most in which a fit comes to its end
 
@@ -40,6 +40,7 @@ class Challenge:
     def __init__(self, steps: Steps, seen: Seen) -> None:
         self._steps = steps
         self._problem = steps.problem
+        self._begun = Begun(steps)
         self._stood: dict[Candidate, tuple[Fit, list[Rival]]] = {}
         # whom to ask when a cause that has stood is asked again, since another one was replaced
         self._near: dict[Candidate, list[Candidate]] = {}
@@ -160,12 +161,12 @@ class Challenge:
         # imitators of something unknown are many: among them only what ends the search counts
         brief = hopeless(self._problem, found.start, found.final)
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
-        begun = self._wider(found.final, cause, proposals)
+        begun = self._begun.wider(found.final, cause, proposals)
         if not brief:
-            begun += self._elsewhere(found.final, cause, among)
+            begun += self._begun.elsewhere(found.final, cause, among)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         if not brief:
-            begun = self._beside_the_others(found.final, cause, without, rivals)
+            begun = self._begun.beside_the_others(found.final, cause, without, rivals)
             rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = self._sharpened(found, without, rivals)
         return [r for r in rivals if self._more_than_a_part(r)]
@@ -176,74 +177,6 @@ class Challenge:
         bent = degenerate(self._problem, rival.candidate, model.values(-1))
         excuse = excuses(self._problem, model, -1)
         return not bent and not excuse and plain(self._problem, model, -1) is None
-
-    def _wider(self, state: Fit, cause: Candidate, proposals: Sequence[Proposal]) -> list[Rival]:
-        """
-        Return the fits of effects that hold the cause's, which begin from what it found.
-
-        They are then never worse than it for having been fitted badly.
-        """
-        values = state.model.values(state.model.causes.index(cause))
-        return self._instead(
-            state,
-            cause,
-            [
-                (p.candidate, widened(p.values, p.candidate, values, cause))
-                for p in proposals
-                if is_part(cause, p.candidate)
-            ],
-        )
-
-    def _elsewhere(
-        self, state: Fit, cause: Candidate, among: Sequence[Candidate] | None
-    ) -> list[Rival]:
-        """
-        Return the fits of the same effect at other places, which begin from what the cause found.
-
-        Screening may have looked for their time or phase in another valley.
-        """
-        values = state.model.values(state.model.causes.index(cause))
-        others = [
-            c
-            for c in (self._steps.candidates if among is None else among)
-            if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
-        ]
-        return self._instead(state, cause, [(c, values) for c in others])
-
-    def _beside_the_others(
-        self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]
-    ) -> list[Rival]:
-        """
-        Return the fits of rivals that came halfway, which begin where the others now stand.
-
-        A weight and a spring of a small angle do the same, but not beside others that have moved
-        to make up for the one before the other came.
-        """
-        close = {r.candidate for r in close_ones(self._problem, state, without, rivals)}
-        far = [c for c in halfway(state, without, rivals) if c not in close][:BEGUN_ANEW]
-        # guesses that have moved to do without one friction hide that another does as well
-        if any(t.guessed for t in self._problem.tolerances):
-            far += [
-                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
-            ]
-        rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
-        if rest is None:
-            return []
-        proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], far))
-        return self._instead(state, cause, [(p.candidate, p.values) for p in proposals])
-
-    def _instead(
-        self, state: Fit, cause: Candidate, begun: Sequence[tuple[Candidate, dict[str, float]]]
-    ) -> list[Rival]:
-        """Return careful fits of candidates in the place of a cause, from where each begins."""
-        rest = state.model.without(state.model.causes.index(cause))
-        known = self._problem.slopes(state)
-
-        def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
-            # only a careful fit tells whether there is more to it
-            return Rival(begin[0], self._problem.fitted(rest.joined(*begin), known, 20, 1e-3))
-
-        return [r for r in self._steps.pool.map(one, begun) if math.isfinite(r.fit.cost)]
 
     def _without(self, found: Found, k: int) -> Fit:
         """

@@ -1,0 +1,116 @@
+"""
+Rivals that begin where a cause has brought everything else.
+
+Screening looks for them where the rest stands without the cause, and may look in another valley.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import math
+
+from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.parts import is_part, widened
+from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway
+from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.screening import Proposal, Screen
+
+BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
+
+
+class Begun:
+    """
+    Fits rivals from where a cause has brought everything else.
+
+    :param steps: of the search.
+    """
+
+    def __init__(self, steps: Steps) -> None:
+        self._steps = steps
+        self._problem = steps.problem
+
+    def wider(self, state: Fit, cause: Candidate, proposals: Sequence[Proposal]) -> list[Rival]:
+        """
+        Return the fits of effects that hold the cause's, which begin from what it found.
+
+        They are then never worse than it for having been fitted badly.
+
+        :param state: with the cause.
+        :param cause: which one.
+        :param proposals: of others in its place.
+        :return: the fits.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        return self._instead(
+            state,
+            cause,
+            [
+                (p.candidate, widened(p.values, p.candidate, values, cause))
+                for p in proposals
+                if is_part(cause, p.candidate)
+            ],
+        )
+
+    def elsewhere(
+        self, state: Fit, cause: Candidate, among: Sequence[Candidate] | None
+    ) -> list[Rival]:
+        """
+        Return the fits of the same effect at other places, which begin from what the cause found.
+
+        Screening may have looked for their time or phase in another valley.
+
+        :param state: with the cause.
+        :param cause: which one.
+        :param among: those to ask; all where None.
+        :return: the fits.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        others = [
+            c
+            for c in (self._steps.candidates if among is None else among)
+            if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
+        ]
+        return self._instead(state, cause, [(c, values) for c in others])
+
+    def beside_the_others(
+        self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]
+    ) -> list[Rival]:
+        """
+        Return the fits of rivals that came halfway, which begin where the others now stand.
+
+        A weight and a spring of a small angle do the same, but not beside others that have moved
+        to make up for the one before the other came.
+
+        :param state: with the cause.
+        :param cause: which one.
+        :param without: the fit without it.
+        :param rivals: fits of others in its place.
+        :return: the fits.
+        """
+        close = {r.candidate for r in close_ones(self._problem, state, without, rivals)}
+        far = [c for c in halfway(state, without, rivals) if c not in close][:BEGUN_ANEW]
+        # guesses that have moved to do without one friction hide that another does as well
+        if any(t.guessed for t in self._problem.tolerances):
+            far += [
+                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
+            ]
+        rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
+        if rest is None:
+            return []
+        proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], far))
+        return self._instead(state, cause, [(p.candidate, p.values) for p in proposals])
+
+    def _instead(
+        self, state: Fit, cause: Candidate, begun: Sequence[tuple[Candidate, dict[str, float]]]
+    ) -> list[Rival]:
+        """Return careful fits of candidates in the place of a cause, from where each begins."""
+        rest = state.model.without(state.model.causes.index(cause))
+        known = self._problem.slopes(state)
+
+        def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
+            # only a careful fit tells whether there is more to it
+            return Rival(begin[0], self._problem.fitted(rest.joined(*begin), known, 20, 1e-3))
+
+        return [r for r in self._steps.pool.map(one, begun) if math.isfinite(r.fit.cost)]
