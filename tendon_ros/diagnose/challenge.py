@@ -46,11 +46,12 @@ class Challenge:
         self._near: dict[Candidate, list[Candidate]] = {}
         self._seen = seen
 
-    def of(self, found: Found) -> None:
+    def of(self, found: Found, *, brief: bool = False) -> None:
         """
         Challenge the causes of the last state; keep whoever fits better.
 
         :param found: its last state, rivals and states without a cause are replaced.
+        :param brief: whether only rivals matter that are far better.
         """
         self._merge(found)
         self._near = {}
@@ -64,7 +65,7 @@ class Challenge:
             )
             state = found.final
             without = self._without(found, state.model.causes.index(cause))
-            rivals = self._challengers(found, cause, without)
+            rivals = self._challengers(found, cause, without, brief)
             better = self._better(found, cause, without, rivals) if replaced < REPLACED else None
             near = halfway(state, without, rivals)
             if better is None:
@@ -147,7 +148,9 @@ class Challenge:
             behind > CLEAR * tie(self._problem, state) * len(state.left) or made_up < 0.5 * missed
         )
 
-    def _challengers(self, found: Found, cause: Candidate, without: Fit) -> list[Rival]:
+    def _challengers(
+        self, found: Found, cause: Candidate, without: Fit, brief: bool
+    ) -> list[Rival]:
         """Return the fits of other candidates in the place of a cause, best first."""
         proposals = found.proposals
         # who is asked again meets only who came near, else everybody: most first looks were taken
@@ -159,7 +162,7 @@ class Challenge:
         proposals = [p for p in proposals if p.candidate != cause]
         missed = without.cost - found.final.cost
         # imitators of something unknown are many: among them only what ends the search counts
-        brief = hopeless(self._problem, found.start, found.final)
+        brief = brief or hopeless(self._problem, found.start, found.final)
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
         begun = self._begun.wider(found.final, cause, proposals)
         if not brief:

@@ -21,6 +21,7 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
+    beyond_laws,
     hopeless,
     LEAST,
     open_question,
@@ -131,11 +132,12 @@ class Search:
             if challenged is state:
                 break
             # better causes may leave more to see: look again where a challenge has changed them
-            self._challenge.of(found)
+            brief = self._of_a_machine(found)
+            self._challenge.of(found, brief=brief)
             if found.final.model.causes == state.model.causes:
                 break
             gained = found.final.cost < GAINED * state.cost
-            if self._imitates(found) and not gained:
+            if (brief or self._imitates(found)) and not gained:
                 break
             state = challenged = found.final
         self._ordered(found)
@@ -156,6 +158,12 @@ class Search:
         """Return whether further causes would only help to imitate one that is not known."""
         final = found.final
         return hopeless(self.problem, found.start, final) or bool(undoing(self.problem, final))
+
+    def _of_a_machine(self, found: Found) -> bool:
+        """Return whether guesses had far to go, and more stays than laws can be wrong by."""
+        return far_off(self.problem, found.start) and beyond_laws(
+            self.problem, found.start, found.final
+        )
 
     def _from_the_file(self, found: Found) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""

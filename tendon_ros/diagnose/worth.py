@@ -183,6 +183,21 @@ def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
     left = problem.structured(state.left)
     if left < MOST_LEFT * problem.structured(start.left):
         return False
+    return beyond_laws(problem, start, state)
+
+
+def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
+    """
+    Return whether more is left than the laws of what was found can be wrong by.
+
+    So it is with every machine, however much of its gap is explained.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with all that was found.
+    :return: whether.
+    """
+    left = problem.structured(state.left)
     return left > HOPELESS * (LEAST + form_power(problem, start, state))
 
 
