@@ -3,8 +3,9 @@
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import Steps
-from tendon_ros.identify.candidate import Candidate
+from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.screening import Screen
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 WRONG = Candidate('viscous_friction', 'pulley_3')
@@ -42,3 +43,20 @@ def test_who_takes_a_place_meets_who_had_it_and_not_everybody(bench, measured_on
     [again] = [among for leave, among in steps.among if leave == [COULOMB]]
     assert WRONG in again
     assert FAR not in again
+
+
+def test_a_brief_challenge_finds_who_is_far_better_with_fewer_fits(bench, measured_on):
+    run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.05}))
+    problem = prepared([run], bench).problem
+    candidates = everyone(bench, sorted(run.channels))
+    fitted = {}
+    for brief in (False, True):
+        found = Found()
+        wrong = problem.empty.joined(WRONG, {'damping': 0.1})
+        found.states += [problem.fitted(problem.empty), problem.fitted(wrong)]
+        steps = Steps(problem, candidates, 1, lambda *_: None)
+        found.proposals = best_of(steps.screened(Screen(problem, found.start)))
+        Challenge(steps, {}).of(found, brief=brief)
+        assert found.final.model.causes == (COULOMB,)
+        fitted[brief] = len(found.rivals[0])
+    assert fitted[True] < fitted[False]

@@ -8,7 +8,14 @@ import pytest
 from tendon_ros.diagnose import worth
 from tendon_ros.diagnose.form import form_power, form_profile, tie
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.worth import gains, moving, stands_out, worthwhile
+from tendon_ros.diagnose.worth import (
+    beyond_laws,
+    gains,
+    hopeless,
+    moving,
+    stands_out,
+    worthwhile,
+)
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.sticking import sticking
 from tendon_ros.model.instrument import EffectUse
@@ -205,3 +212,19 @@ def test_what_is_left_all_the_time_is_not_explained_by_an_event(body, measured_o
     gain, _ = gains(problem, before, best)
     assert gain > 1.0
     assert not worthwhile(problem, before, before, best)
+
+
+@pytest.mark.parametrize(
+    ('left', 'beyond', 'lost'), [(0.3, False, False), (5.0, True, False), (60.0, True, True)]
+)
+def test_a_machine_leaves_more_than_laws_can_be_wrong_by(rubbing, left, beyond, lost):
+    def leaving(fit, shape):
+        return replace(fit, left=shape, cost=float(shape @ shape))
+
+    wave = np.sin(np.linspace(0.0, 40.0, len(rubbing.fitted(rubbing.empty, rounds=0).left)))
+    start = leaving(rubbing.fitted(rubbing.empty, rounds=0), 100.0 * wave)
+    rubs = rubbing.fitted(rubbing.empty.joined(RUBS, {'torque': 1e-3}), rounds=0)
+    state = leaving(rubs, left * wave)
+    assert beyond_laws(rubbing, start, state) is beyond
+    # of what was there little may be left for all that
+    assert hopeless(rubbing, start, state) is lost
