@@ -26,6 +26,8 @@ TAKES = 0.65
 #: times the form of the laws, and part of the gap, that may be left for a search to go on after a
 #: challenge: machines leave much of their noise's power, but little of the gap
 HOPELESS, MOST_LEFT = 10.0, 0.15
+#: the same, for a machine of which guesses are found: there challenges only polish
+MACHINE = 3.0
 #: part of what is left in one channel that it must explain else
 HALF = 0.5
 #: part of the samples that tells anything of a cause which shows there alone
@@ -183,12 +185,12 @@ def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
     left = problem.structured(state.left)
     if left < MOST_LEFT * problem.structured(start.left):
         return False
-    return beyond_laws(problem, start, state)
+    return left > HOPELESS * (LEAST + form_power(problem, start, state))
 
 
 def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
     """
-    Return whether more is left than the laws of what was found can be wrong by.
+    Return whether clearly more is left than the laws of what was found can be wrong by.
 
     So it is with every machine, however much of its gap is explained.
 
@@ -198,7 +200,7 @@ def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
     :return: whether.
     """
     left = problem.structured(state.left)
-    return left > HOPELESS * (LEAST + form_power(problem, start, state))
+    return left > MACHINE * (LEAST + form_power(problem, start, state))
 
 
 def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:
