@@ -1,8 +1,8 @@
 """
 Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.grasper FILE.npz``.
 
-Trains on six runs of three frequencies and two loads, or on ``--trained``, or takes the instrument
-file of an earlier diagnosis, and says of the runs that it has not seen: the torque of the spindle
+Trains on fifteen runs of three frequencies and every second load, or on ``--trained``, or takes the
+instrument file of an earlier diagnosis, and says of the runs that it has not seen: the torque of the spindle
 predicted from the jaw's torque and the motion; the jaw's torque and angle estimated from the
 spindle, and from the motor alone, without and with knowing how fast the load changes. With
 ``--tool`` the tool is looked at without its drive: the motion is that of its spindle. Standard
@@ -34,7 +34,7 @@ from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
 FloatArray = NDArray[np.float64]
 
-TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in (2, 8))
+TRAINED = tuple(f'{speed}{load}' for speed in (0, 2, 4) for load in range(0, 10, 2))
 EVERY = tuple(f'{speed}{load}' for speed in range(5) for load in range(10))
 JAW = 'pulley/pulley_jaw/position'
 LOAD = 'load_cell/torque'
