@@ -1,12 +1,12 @@
 """
 Diagnose runs of the da Vinci grasper, judge on all others: ``python -m bench.grasper FILE.npz``.
 
-Trains on fifteen runs of three frequencies and every second load, or on ``--trained``, or takes the
-instrument file of an earlier diagnosis, and says of the runs that it has not seen: the torque of the spindle
-predicted from the jaw's torque and the motion; the jaw's torque and angle estimated from the
-spindle, and from the motor alone, without and with knowing how fast the load changes. With
-``--tool`` the tool is looked at without its drive: the motion is that of its spindle. Standard
-output is a table, a picture goes to ``--figure``.
+Trains on fifteen runs of three frequencies and every second load, or on ``--trained``, or takes
+the instrument file of an earlier diagnosis, and says of the runs that it has not seen: the torque
+of the spindle predicted from the jaw's torque and the motion; the jaw's torque and angle estimated
+from the spindle, and from the motor alone, without and with knowing how fast the load changes.
+With ``--tool`` the tool is looked at without its drive: the motion is that of its spindle.
+Standard output is a table, a picture goes to ``--figure``.
 """
 
 from __future__ import annotations
