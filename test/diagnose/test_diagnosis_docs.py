@@ -30,7 +30,7 @@ def test_numbers(words):
 
 
 def test_counts_in_words():
-    names = {3: 'three', 4: 'four', 6: 'six', 8: 'Eight'}
+    names = {3: 'three', 4: 'four', 6: 'six', 10: 'Ten'}
     places = {6: 'sixth'}
     assert f'{names[int(tolerance.REACH)]} deviations at most' in TEXT
     assert f's in {names[prepare.KEPT]} is never fitted' in TEXT
