@@ -6,18 +6,44 @@ Where a pulley rests or turns round, a hair of an angle decides how much of its 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.statics import Statics
 
 FloatArray = NDArray[np.float64]
 
+BENT = 'presliding_friction'
 #: a pulley that has not gone further in this time than its angle is uncertain may as well have
 #: turned round [s]
 TURNED = 0.05
 #: the shortest way and uncertainty that divide others [rad]
 LEAST = 1e-9
+
+
+def readable(instrument: Instrument, count: float) -> Instrument:
+    """
+    Return an instrument whose friction builds up over no less than what can be read of an angle.
+
+    Friction that turns round within a hair of a count would follow the counts, and not the motion.
+
+    :param instrument: the network.
+    :param count: of its encoders [rad].
+    :return: the same but for pre-sliding angles below that.
+    """
+    effects = [
+        replace(
+            use,
+            parameters={**use.parameters, 'angle': max(count, use.parameters.get('angle', 0.0))},
+        )
+        if use.effect == BENT
+        else use
+        for use in instrument.effects
+    ]
+    return replace(instrument, effects=tuple(effects))
 
 
 class Rubbing:

@@ -29,7 +29,7 @@ from tendon_ros.estimate.expectation import Expectation
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
-from tendon_ros.estimate.rubbing import Rubbing
+from tendon_ros.estimate.rubbing import readable, Rubbing
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
@@ -100,7 +100,8 @@ class StaticBalanceObserver(Observer):
         self._fixed = [i for _, i in self._angles]
         self._free = [i for i in range(len(instrument.pulleys)) if i not in self._fixed]
         self._sigma_angle = np.array([self._doubt(known[name]) for name, _ in self._angles])
-        self._statics = Statics(instrument, engine=engine)
+        count = max(known[name].resolution for name, _ in self._angles)
+        self._statics = Statics(readable(instrument, count), engine=engine)
         self._plan_rows()
         least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
         self._expectation = Expectation(least, wander)

@@ -7,6 +7,7 @@ import pytest
 from tendon_ros.estimate.methods import build, METHODS
 from tendon_ros.estimate.offline import estimate_recording
 from tendon_ros.estimate.readings import Readings
+from tendon_ros.estimate.rubbing import readable
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen
@@ -54,3 +55,14 @@ def test_a_force_is_found_whatever_its_sensors_make_of_it(method, bench, rms):
         off[name] = rms((found.value - truth.at(found.time))[late])
     assert off['known'] < 0.03 * truth.value.max()
     assert off['unknown'] > 3.0 * off['known']
+
+
+def test_friction_builds_up_over_no_less_than_a_count(bench):
+    bent = EffectUse(
+        'presliding_friction', 'pulley_3', {'torque': 0.0, 'angle': 1e-6, 'dither': 0.0}
+    )
+    soft = replace(bent, parameters={'torque': 0.1, 'angle': 0.01, 'dither': 1e-4})
+    [finer, kept, other] = readable(replace(bench, effects=(bent, soft, WRONG[0])), 1e-3).effects
+    assert finer.parameters == {'torque': 0.0, 'angle': 1e-3, 'dither': 0.0}
+    assert kept == soft
+    assert other == WRONG[0]
