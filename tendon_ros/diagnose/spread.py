@@ -84,11 +84,11 @@ def loose(ready: Prepared, found: Found) -> Loose | None:
     :param found: what the search has found.
     :return: them, and how far numbers are off; None where no cause is one of these.
     """
-    fit = found.final
-    known = [t for t in ready.problem.tolerances if t.supposed and not t.guessed]
-    if not any(t.is_moved_by(c) for t in known for c in fit.model.causes):
+    owned = ready.problem.owned(found.final.model)
+    known = zip(ready.problem.tolerances, owned, strict=True)
+    if not any(moves and t.supposed for t, moves in known):
         return None
-    fit = ready.problem.centred(fit)
+    fit = ready.problem.centred(found.final)
     within = _within(ready.problem, fit)
     beyond = _beyond(ready.problem, fit)
     off = np.array([*(off for off, _ in within), *(off for _, off, _ in beyond)])
@@ -113,7 +113,7 @@ def _within(problem: Problem, fit: Fit) -> list[tuple[float, float]]:
     owned = problem.owned(fit.model)
     found = []
     for n, tolerance in enumerate(problem.tolerances):
-        if tolerance.supposed and not tolerance.guessed and not owned[n]:
+        if tolerance.supposed and not owned[n]:
             part = float(np.clip(variance[first + n], *KNOWS))
             found.append((float(fit.model.moved[n]) / (1.0 - part), part / (1.0 - part)))
     return found
@@ -125,7 +125,7 @@ def _beyond(problem: Problem, fit: Fit) -> list[tuple[Candidate, float, float]]:
     found = []
     for k, cause in enumerate(fit.model.causes):
         for t in problem.tolerances:
-            if t.supposed and not t.guessed and t.is_moved_by(cause):
+            if t.supposed and t.is_moved_by(cause):
                 low, high = (t.axis.place(end) for end in intervals[k][t.parameter])
                 off = t.axis.place(fit.model.values(k)[t.parameter])
                 found.append((cause, off, ((high - low) / (2.0 * NORMAL)) ** 2))

@@ -182,10 +182,9 @@ def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
     :param state: with all that was found.
     :return: whether further causes would only imitate it.
     """
-    left = problem.structured(state.left)
-    if left < MOST_LEFT * problem.structured(start.left):
+    if problem.structured(state.left) < MOST_LEFT * problem.structured(start.left):
         return False
-    return left > HOPELESS * (LEAST + form_power(problem, start, state))
+    return _beyond(problem, start, state) > HOPELESS
 
 
 def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
@@ -199,8 +198,12 @@ def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
     :param state: with all that was found.
     :return: whether.
     """
-    left = problem.structured(state.left)
-    return left > MACHINE * (LEAST + form_power(problem, start, state))
+    return _beyond(problem, start, state) > MACHINE
+
+
+def _beyond(problem: Problem, start: Fit, state: Fit) -> float:
+    """Return times what laws can be wrong by that is left."""
+    return problem.structured(state.left) / (LEAST + form_power(problem, start, state))
 
 
 def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:

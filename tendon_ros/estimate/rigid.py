@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.estimate.channels import doubt, OperatingForce
+from tendon_ros.estimate.channels import OperatingForce
 from tendon_ros.model.instrument import Instrument, Sensor
 
 FloatArray = NDArray[np.float64]
@@ -41,7 +41,7 @@ class Rigid:
 
 
 def told_if_rigid(
-    instrument: Instrument, torques: Sequence[Sensor], operating: OperatingForce
+    instrument: Instrument, torques: Sequence[tuple[Sensor, float]], operating: OperatingForce
 ) -> float:
     """
     Return how well torques would tell the operating force of a rigid rig.
@@ -50,13 +50,13 @@ def told_if_rigid(
     that, but for a moment only.
 
     :param instrument: the network.
-    :param torques: sensors of torques.
+    :param torques: sensors of torques, each with how far what it measures is uncertain [N m].
     :param operating: the force.
     :return: one deviation [N or N m]; 0 where none of them feels it.
     """
     motors = {m.name: m.pulley for m in instrument.motors}
     told = []
-    for sensor in torques:
+    for sensor, doubt in torques:
         of = motors[sensor.of] if sensor.kind == 'motor_torque' else sensor.of
         pulley = instrument.index(of)
         turned = np.zeros(len(instrument.pulleys))
@@ -65,5 +65,5 @@ def told_if_rigid(
         turned[others] = Rigid(instrument, others).free(turned)
         moved = abs(float(operating.torque @ turned))
         if moved > FEELS * float(np.abs(operating.torque).max()):
-            told.append(doubt(sensor) / moved)
+            told.append(doubt / moved)
     return min(told, default=0.0)

@@ -103,7 +103,8 @@ class StaticBalanceObserver(Observer):
         count = max(known[name].resolution for name, _ in self._angles)
         self._statics = Statics(readable(instrument, count), engine=engine)
         self._plan_rows()
-        least = told_if_rigid(instrument, [s for _, s in self._torques], self._operating)
+        doubts = [(sensor, self._doubt(sensor)) for _, sensor in self._torques]
+        least = told_if_rigid(instrument, doubts, self._operating)
         self._expectation = Expectation(least, wander)
         self._rigid = Rigid(instrument, self._free)
         unsure = np.zeros(len(instrument.pulleys))

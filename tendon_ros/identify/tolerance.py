@@ -32,7 +32,7 @@ class Tolerance:
     One number of the file that may move: the effect that moves it, and how far it may.
 
     ``given``: the file has this effect there already, and its parameter moves. ``supposed``: the
-    file does not say how well it knows the number.
+    file does not say how well it knows the number; what it calls guessed it does say.
     """
 
     effect: str
