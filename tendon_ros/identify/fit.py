@@ -178,9 +178,11 @@ class Problem(Slopes):
         # the valleys of guesses are long and bent: several steps at once lead astray there
         tried = TRIES[:1] if guessed else TRIES
         anew = fresh
+        told = slope[:, fresh]
         for _ in range(rounds):
             slope[:, anew] = self.slope(self.unpack(model, place.x), place.left, anew)
             anew = fresh
+            told = slope[:, fresh]
             before = place.cost
             for tries in tried:
                 last, place = place, descent.step(place, slope, tries, accuracy)
@@ -195,6 +197,8 @@ class Problem(Slopes):
                 looks -= 1
                 taken = np.where(np.isin(np.arange(len(x)), far), place.x, taken)
                 anew, far = [*fresh, *far], []
+        # those that have followed a step on which all moved tell of each some of what others did
+        slope[:, fresh] = told
         return Fit(self.unpack(model, place.x), place.left, slope, place.cost)
 
     def _bounds(self, model: Model) -> FloatArray:

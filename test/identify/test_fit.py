@@ -59,6 +59,30 @@ def test_with_another_controller_and_sampling(bench, measured_on, part, rate):
     assert fit.model.values(0)['gain'] == pytest.approx(1.15, rel=0.03)
 
 
+def test_derivatives_tell_of_each_cause_alone(bench, measured_on):
+    # both begin far off, the way is bent, and every step moves both
+    run = measured_on(
+        bench,
+        ('contact_stiffness', 'contact', {'scale': 2.5}),
+        ('load_cell_bias', 'load_cell', {'force': 2.0}),
+        trajectory='paper_fig12',
+        settings=(),
+        touching=True,
+    )
+    problem = prepared([run], bench).problem
+    model = problem.empty
+    for cause in (
+        Candidate('contact_stiffness', 'contact'),
+        Candidate('load_cell_bias', 'load_cell'),
+    ):
+        model = model.joined(cause, {p.name: p.neutral for p in cause.parameters})
+    fit = problem.fitted(model)
+    [bias] = [j for j, name in enumerate(problem.labels(fit.model)) if 'load_cell_bias' in name]
+    for channel, samples in problem.channels().items():
+        seen = float(np.sum(fit.slope[samples, bias] ** 2))
+        assert (seen > 0.0) == (channel == 'load_cell/force'), channel
+
+
 def test_a_phase_is_found_from_any_start(measured_on):
     body = load_instrument('single_body')
     truth = {'torque': 0.2, 'phase': -1.2}
