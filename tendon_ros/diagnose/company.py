@@ -55,6 +55,7 @@ def companies(
     lasting = [k for k in able if not causes[k].instants]
     sure = {k for k in lasting if weighed[k].chance >= NAMED}
     missed = {k: found.without[k].cost - final.cost for k in lasting}
+    known = problem.slopes(final)
     fits: dict[tuple[int, ...], Fit] = {}
 
     def without_all(members: tuple[int, ...]) -> Fit:
@@ -65,6 +66,11 @@ def companies(
 
     def more_together(pair: tuple[int, int]) -> float:
         alone = missed[pair[0]] + missed[pair[1]]
+        # careful fits only find less: most pairs are no company by a rough one
+        rough = problem.fitted(final.model.without(*pair), known, rounds=4, accuracy=1e-2)
+        more = rough.cost - final.cost - MAKES_UP * alone
+        if more <= 0.0:
+            return more
         return without_all(pair).cost - final.cost - MAKES_UP * alone
 
     pairs = [pair for pair in combinations(lasting, 2) if not sure.issuperset(pair)]
@@ -82,8 +88,8 @@ def companies(
             continue
         equal = [causes[k] for k in others]
         equal += [e for k in (first, *others) for e in weighed[k].equal]
-        known = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
-        whole = replace(weighed[first], equal=known, signs=signs, chance=likely, without=without)
+        alike = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
+        whole = replace(weighed[first], equal=alike, signs=signs, chance=likely, without=without)
         named.append(Company((first, *others), whole))
     return named
 

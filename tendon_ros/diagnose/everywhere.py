@@ -36,13 +36,16 @@ def everywhere(candidates: Sequence[Candidate], model: Model, part: float) -> Mo
     Return a model with all that transmissions usually have.
 
     :param candidates: all that may be named.
-    :param model: where the numbers of the file are.
+    :param model: where the numbers of the file are, and what is known already.
     :param part: of what is typical, for sizes of what has a threshold.
     :return: the model with more causes.
     """
+    known = {(c.effect, c.place) for c in model.causes}
     for candidate in candidates:
         # what a load cell reads is what pushes: its zero is not to be had beside all else
-        if candidate.effect in USUAL and candidate.place != 'load_cell':
+        if candidate.place == 'load_cell' or (candidate.effect, candidate.place) in known:
+            continue
+        if candidate.effect in USUAL:
             sized = 0.0 if candidate.effect in LINEAR else part
             values = {
                 p.name: p.typical if p.is_shape else p.neutral + sized * (p.typical - p.neutral)
@@ -52,17 +55,19 @@ def everywhere(candidates: Sequence[Candidate], model: Model, part: float) -> Mo
     return model
 
 
-def thinned_out(steps: Steps, start: Fit, most: int) -> Fit | None:
+def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None) -> Fit | None:
     """
     Return what is needed of all that transmissions usually have.
 
     :param steps: of the search.
     :param start: without any cause.
     :param most: causes that may stay.
+    :param known: what was found already; None to begin with the file.
     :return: the fit; None where the model with all of it diverges.
     """
     problem = steps.problem
-    begun = [everywhere(steps.candidates, problem.empty, part) for part in BEGINNINGS]
+    before = problem.empty if known is None else known
+    begun = [everywhere(steps.candidates, before, part) for part in BEGINNINGS]
     rough = steps.pool.map(lambda m: problem.fitted(m, rounds=FAR, accuracy=1e-2), begun)
     state = min(rough, key=lambda fit: fit.cost)
     while math.isfinite(state.cost):

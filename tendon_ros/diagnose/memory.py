@@ -51,24 +51,15 @@ class Memory:
                 digest.update(channel.time.tobytes())
                 digest.update(channel.value.tobytes())
         self._key = digest.hexdigest()
+        self._models, self._weighed = self._read()
 
     def models(self) -> list[Model]:
         """Return the models of the steps that were finished; none where nothing fits."""
-        try:
-            data = json.loads(self._path.read_text(encoding='utf-8'))
-            if data['key'] != self._key:
-                return []
-            return [
-                Model(
-                    tuple(_candidate(*c) for c in row['causes']),
-                    tuple(tuple(z) for z in row['z']),
-                    {(place, name): float(z) for place, name, z in row['bristle']},
-                    np.array(row['moved'], dtype=np.float64),
-                )
-                for row in data['models']
-            ]
-        except (OSError, ValueError, KeyError, TypeError):
-            return []
+        return self._models
+
+    def weighed(self) -> Model | None:
+        """Return by what is left of which model channels weigh; None where by their noise."""
+        return self._weighed
 
     def keep(self, models: Sequence[Model]) -> None:
         """
@@ -76,24 +67,62 @@ class Memory:
 
         :param models: one a step.
         """
-        rows = [
-            {
-                'causes': [[c.effect, c.place, c.only, c.given, c.magnitude] for c in m.causes],
-                'z': [list(row) for row in m.z],
-                'bristle': [[*key, z] for key, z in m.bristle.items()],
-                'moved': m.moved.tolist(),
-            }
-            for m in models
-        ]
-        text = json.dumps({'key': self._key, 'models': rows})
+        self._models = list(models)
+        self._write()
+
+    def weigh(self, model: Model) -> None:
+        """
+        Remember that channels weigh by what a model leaves of them; steps before do not count.
+
+        :param model: which.
+        """
+        self._models, self._weighed = [], model
+        self._write()
+
+    def _read(self) -> tuple[list[Model], Model | None]:
+        try:
+            data = json.loads(self._path.read_text(encoding='utf-8'))
+            if data['key'] != self._key:
+                return [], None
+            weighed = data['weighed']
+            return [_model(row) for row in data['models']], weighed and _model(weighed)
+        except (OSError, ValueError, KeyError, TypeError):
+            return [], None
+
+    def _write(self) -> None:
+        content = {
+            'key': self._key,
+            'models': [_row(m) for m in self._models],
+            'weighed': None if self._weighed is None else _row(self._weighed),
+        }
+        text = json.dumps(content)
         part = self._path.with_suffix('.part')
         part.write_text(text, encoding='utf-8')
         part.replace(self._path)
 
     def forget(self) -> None:
         """Drop what was remembered: the diagnosis is done."""
+        self._models, self._weighed = [], None
         with contextlib.suppress(OSError):
             self._path.unlink()
+
+
+def _row(model: Model) -> dict[str, Any]:
+    return {
+        'causes': [[c.effect, c.place, c.only, c.given, c.magnitude] for c in model.causes],
+        'z': [list(row) for row in model.z],
+        'bristle': [[*key, z] for key, z in model.bristle.items()],
+        'moved': model.moved.tolist(),
+    }
+
+
+def _model(row: dict[str, Any]) -> Model:
+    return Model(
+        tuple(_candidate(*c) for c in row['causes']),
+        tuple(tuple(z) for z in row['z']),
+        {(place, name): float(z) for place, name, z in row['bristle']},
+        np.array(row['moved'], dtype=np.float64),
+    )
 
 
 def _candidate(

@@ -98,6 +98,40 @@ class Prepared:
             for a, b in zip(mine.measured, its.measured, strict=True)
         )
 
+    def weighed(self, model: Model) -> Prepared:
+        """
+        Return the same with channels that weigh by what a model leaves of them.
+
+        Where no law is quite right, noise says nothing of how well a channel can be foretold: the
+        one with least noise would have all of its misfit explained by what spoils all others.
+
+        :param model: what is believed.
+        :return: the problems with what stays of each channel as its misfit.
+        """
+        segments = self.whole.rollouts.segments
+        predicted = self.whole.rollouts.predicted(self.whole.uses(model))
+        beyond: dict[str, list[FloatArray]] = {}
+        for segment, rows, masks in zip(segments, predicted, self.problem.masks, strict=True):
+            for m, row, mask in zip(segment.measured, rows, masks, strict=True):
+                own = ((m.value - row) ** 2 - m.noise**2)[mask]
+                beyond.setdefault(m.sensor.channel, []).append(own)
+        misfit = {
+            channel: float(np.sqrt(max(0.0, float(np.mean(own)))))
+            for channel, parts in beyond.items()
+            if (own := np.concatenate(parts)).size
+        }
+        changed = [
+            replace(
+                segment,
+                measured=tuple(
+                    replace(m, misfit=misfit.get(m.sensor.channel, 0.0)) for m in segment.measured
+                ),
+            )
+            for segment in segments
+        ]
+        rollouts = self.whole.rollouts.like(changed)
+        return _problems(rollouts, self.noise, self.shift, self.looser)
+
     def moved(self, shift: int) -> Prepared:
         """
         Return the same with other blocks held out.

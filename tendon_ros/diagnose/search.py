@@ -80,7 +80,8 @@ class Search:
         """
         Search.
 
-        :return: what was found.
+        :return: what was found; what holds of all that is usual, and no more, where channels
+            should weigh by what it leaves of them.
         """
         found = Found()
         self._steps.report('fitting the tolerances', 0.0)
@@ -100,8 +101,8 @@ class Search:
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)
             found.states.append(state)
-        if self._begun is not None and self._begun.causes:
-            earlier = self._steps.pruned(found.start, self._steps.settled(self._begun))
+        if self._begun is not None and self._begun.causes and len(found.states) == 1:
+            earlier = self._again(found, self._begun)
             if self._believed(found, found.start, earlier):
                 state = earlier
                 found.states.append(state)
@@ -117,6 +118,9 @@ class Search:
                     screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
                 grown = self._of_many(found) if turn == 0 else None
+                if grown is not None and self._unweighed(found, grown):
+                    found.unweighed = grown
+                    return found
                 if grown is None:
                     grown = self._grown(found, state, screen, proposals)
                     if turn == 0 and astray(self.problem, found.start, grown):
@@ -143,6 +147,15 @@ class Search:
         self._ordered(found)
         return found
 
+    def _again(self, found: Found, begun: Model) -> Fit:
+        """Return what is needed of what was found before, beside all that usually is there."""
+        thinned = None
+        # what was not worth having while other channels outweighed those that it shows in
+        if self.problem.by_misfit and far_off(self.problem, found.start):
+            self._steps.report('looking for what else usually is there', 0.04)
+            thinned = thinned_out(self._steps, found.start, MOST, begun)
+        return thinned or self._steps.pruned(found.start, self._steps.settled(begun))
+
     def _without_sign(self, found: Found) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
@@ -164,6 +177,12 @@ class Search:
         return far_off(self.problem, found.start) and beyond_laws(
             self.problem, found.start, found.final
         )
+
+    def _unweighed(self, found: Found, fit: Fit) -> bool:
+        """Return whether channels weigh by their noise where laws leave more than that."""
+        if self.problem.by_misfit or self.problem.structured(fit.left) < 1.0:
+            return False
+        return beyond_laws(self.problem, found.start, fit)
 
     def _from_the_file(self, found: Found) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""

@@ -165,7 +165,16 @@ def _searched(
     memory: Memory | None,
 ) -> tuple[Prepared, Found]:
     """Search, and on where noise, or blocks that were held out, held something to be found."""
-    found = Search(ready.problem, candidates, jobs, report, memory).run()
+    by = memory.weighed() if memory else None
+    ready = ready.weighed(by) if by is not None else ready
+    found = Search(ready.problem, candidates, jobs, report, memory, by).run()
+    if found.unweighed is not None:
+        report('looking again: channels weigh by what stays of them', 0.0)
+        by = found.unweighed.model
+        ready = ready.weighed(by)
+        if memory is not None:
+            memory.weigh(by)
+        found = Search(ready.problem, candidates, jobs, report, memory, by).run()
     again = ready.heard_again(found.final.model)
     # what stands in for something unknown may take noise away as well, and tells no more
     if again.quieter(ready) and not hopeless(ready.problem, found.start, found.final):

@@ -6,11 +6,14 @@ Where a pulley rests or turns round, a hair of an angle decides how much of its 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.estimate.channels import sensors_of
+from tendon_ros.estimate.rigid import Rigid
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.statics import Statics
 
@@ -44,6 +47,39 @@ def readable(instrument: Instrument, count: float) -> Instrument:
         for use in instrument.effects
     ]
     return replace(instrument, effects=tuple(effects))
+
+
+def unsure_angles(
+    instrument: Instrument, rigid: Rigid, measured: Mapping[int, float]
+) -> FloatArray:
+    """
+    Return by how much each pulley's angle is uncertain.
+
+    What a diagnosis left of a joint's angle is how far the model misses it from the motor's side.
+    A pulley that no diagnosis saw is missed like the worst of the others, by how far it turns.
+
+    :param instrument: the network.
+    :param rigid: where the angles that are not measured would be without stretch.
+    :param measured: by pulley, how uncertain the angles are that are [rad].
+    :return: one deviation [rad], shape (pulleys,).
+    """
+    count = len(instrument.pulleys)
+    unsure = np.zeros(count)
+    unsure[list(measured)] = list(measured.values())
+    turns = np.eye(count)  # of each pulley by one of each that is measured
+    free = [i for i in range(count) if i not in measured]
+    turns[free] = rigid.free(np.eye(count))
+    reach = np.linalg.norm(turns, axis=1)
+    missed = {
+        instrument.index(s.of): s.misfit
+        for s in sensors_of(instrument, ('angle',)).values()
+        if s.misfit > 0.0
+    }
+    worst = max((missed[i] / reach[i] for i in missed if i in free and reach[i]), default=0.0)
+    spread = np.linalg.norm(turns * unsure, axis=1)
+    for i in free:
+        spread[i] = np.hypot(spread[i], missed.get(i, worst * reach[i]))
+    return spread
 
 
 class Rubbing:

@@ -29,7 +29,7 @@ from tendon_ros.estimate.expectation import Expectation
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
-from tendon_ros.estimate.rubbing import readable, Rubbing
+from tendon_ros.estimate.rubbing import readable, Rubbing, unsure_angles
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
@@ -107,9 +107,8 @@ class StaticBalanceObserver(Observer):
         least = told_if_rigid(instrument, doubts, self._operating)
         self._expectation = Expectation(least, wander)
         self._rigid = Rigid(instrument, self._free)
-        unsure = np.zeros(len(instrument.pulleys))
-        unsure[self._fixed] = self._sigma_angle
-        unsure[self._free] = np.abs(self._rigid.free(unsure))
+        angles = dict(zip(self._fixed, self._sigma_angle.tolist(), strict=True))
+        unsure = unsure_angles(instrument, self._rigid, angles)
         self._friction = Rubbing(self._statics, unsure)
         self._play = Play(instrument, self._free, self._statics)
         self._reset()

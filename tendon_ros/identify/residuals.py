@@ -49,7 +49,7 @@ class Residuals:
         )
         self._asked = tuple(bool(mask.any()) for mask in self._masks)
         self._noise = tuple(
-            np.array([m.noise for m in s.measured]).reshape(-1, len(s.time))
+            np.array([m.doubt for m in s.measured]).reshape(-1, len(s.time))
             for s in self._segments
         )
 
@@ -62,6 +62,11 @@ class Residuals:
     def masks(self) -> tuple[NDArray[np.bool_], ...]:
         """Which samples count: one (channels, bins) a segment."""
         return self._masks
+
+    @property
+    def by_misfit(self) -> bool:
+        """Whether channels weigh by what a model left of them, beside their noise."""
+        return any(m.misfit > 0.0 for s in self._segments for m in s.measured)
 
     @property
     def empty(self) -> Model:
@@ -223,7 +228,8 @@ class Residuals:
             noise = 0.5 * float(step @ step) * len(own) / len(step)
             # what keeps below noise that has a shape is no gap
             measured = self._segments[n].measured[c]
-            beyond = float(own @ own) - max(noise, FLOOR * measured.counted * len(own))
+            shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
+            beyond = float(own @ own) - max(noise, FLOOR * shaped * len(own))
             entry = power.setdefault(measured.sensor.channel, [0.0, 0.0])
             entry[0] += max(0.0, beyond)
             entry[1] += len(own)

@@ -41,6 +41,7 @@ class Measured:
     shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean;
     ``floor`` is what the sensor alone would by its data sheet; ``counted`` is the part of the
     noise's power that has a shape: what still encoders leave, and what does not repeat itself.
+    ``misfit``, in the sensor's unit, is what models of this machine leave of the channel.
     """
 
     sensor: Sensor
@@ -48,6 +49,12 @@ class Measured:
     noise: FloatArray
     floor: float
     counted: float = 1.0
+    misfit: float = 0.0
+
+    @cached_property
+    def doubt(self) -> FloatArray:
+        """By how much the right model may be off: noise and misfit, shape (bins,)."""
+        return np.hypot(self.noise, self.misfit)
 
     @cached_property
     def level(self) -> FloatArray:

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument_file import load_instrument
 
 
@@ -88,6 +90,22 @@ def test_a_spoilt_file_is_no_obstacle(tmp_path, body, run, text):
     path = tmp_path / 'unfinished.json'
     path.write_text(text)
     assert Memory(path, [run], body).models() == []
+
+
+def test_what_channels_weigh_by_is_remembered(tmp_path, body, run):
+    path = tmp_path / 'unfinished.json'
+    memory = Memory(path, [run], body)
+    assert memory.weighed() is None
+    found = Model((), (), {}, np.array([0.5, -1.0]))
+    memory.keep([found, found])
+    memory.weigh(found)
+    again = Memory(path, [run], body)
+    assert again.models() == []
+    assert again.weighed().moved.tolist() == [0.5, -1.0]
+    again.keep([found])
+    later = Memory(path, [run], body)
+    assert len(later.models()) == 1
+    assert later.weighed() is not None
 
 
 def test_forgetting_twice_is_fine(interrupted, body, run):

@@ -214,3 +214,25 @@ def test_encoders_at_ten_kilohertz_are_read_a_thousand_times_a_second(bench, fre
         found[rate] = segment.motion.value
     assert max(seen) <= 1.01e3 * (free.end - free.start)
     assert found[1e4] == pytest.approx(found[1e3], abs=1e-5)
+
+
+def test_channels_weigh_by_what_a_model_leaves_of_them(bench, free):
+    ready = prepared([free], bench)
+    plain = ready.problem
+    wrong = plain.empty.joined(Candidate('coulomb_friction', 'pulley_M'), {'torque': 0.3})
+    weighed = ready.weighed(wrong)
+    assert weighed.problem.by_misfit
+    assert not plain.by_misfit
+    left, before = weighed.problem.left(wrong), plain.left(wrong)
+    for channel, samples in plain.channels().items():
+        # what was off by noise alone weighs as it did
+        squares = float(np.mean(before[samples] ** 2))
+        assert np.mean(left[samples] ** 2) == pytest.approx(min(squares, 1.0), rel=0.1), channel
+    # noise stays what it was, also where it is heard again
+    for later in (weighed, weighed.heard_again(wrong)):
+        assert later.problem.by_misfit
+        for was, now in zip(
+            ready.whole.rollouts.segments, later.whole.rollouts.segments, strict=True
+        ):
+            for a, b in zip(was.measured, now.measured, strict=True):
+                assert np.median(b.noise) <= np.median(a.noise)
