@@ -67,11 +67,10 @@ def companies(
     def more_together(pair: tuple[int, int]) -> float:
         alone = missed[pair[0]] + missed[pair[1]]
         # careful fits only find less: most pairs are no company by a rough one
-        rough = problem.fitted(final.model.without(*pair), known, rounds=4, accuracy=1e-2)
-        more = rough.cost - final.cost - MAKES_UP * alone
-        if more <= 0.0:
-            return more
-        return without_all(pair).cost - final.cost - MAKES_UP * alone
+        fit = problem.fitted(final.model.without(*pair), known, rounds=4, accuracy=1e-2)
+        if fit.cost - final.cost > MAKES_UP * alone:
+            fit = without_all(pair)
+        return fit.cost - final.cost - MAKES_UP * alone
 
     pairs = [pair for pair in combinations(lasting, 2) if not sure.issuperset(pair)]
     more = {pair: more_together(pair) for pair in pairs}

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tendon_ros.identify.segment import FITTED, Segment
 
 KEPT = 4  # of so many recordings, or blocks of them, in a row one fewer is fitted
+BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument remembers a disturbance
 
 
 def enough(segments: Sequence[Segment], shift: int = 0) -> set[int]:

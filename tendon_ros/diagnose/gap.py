@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import FIELD_UNITS
+from tendon_ros.diagnose.enough import BLOCK
 from tendon_ros.diagnose.intervals import mean_square_interval
-from tendon_ros.diagnose.prepare import BLOCK
 from tendon_ros.diagnose.result import ChannelGap, Shrink
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
@@ -76,6 +77,17 @@ def shrink_of(held: Problem, start: Model, without: Model, final: Model) -> Shri
         without_this=left[channel].rms,
         after=after[channel].rms,
     )
+
+
+def beyond_noise(off: float, noise: float) -> float:
+    """
+    Return what of a channel's misfit is not its noise.
+
+    :param off: root mean square of what a model leaves, in any unit.
+    :param noise: one deviation, in the same.
+    :return: one deviation.
+    """
+    return math.sqrt(max(0.0, off**2 - noise**2))
 
 
 def unit_of(channel: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-import math
 
+from tendon_ros.diagnose.gap import beyond_noise
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
@@ -92,7 +92,7 @@ def doubted(instrument: Instrument, gaps: Sequence[ChannelGap]) -> Instrument:
     :param gaps: of its channels, on what no fit has seen.
     :return: with what is left beyond noise as the misfit of each sensor.
     """
-    left = {g.channel: math.sqrt(max(0.0, g.after**2 - g.noise_floor**2)) for g in gaps}
+    left = {g.channel: beyond_noise(g.after, g.noise_floor) for g in gaps}
     sensors = tuple(
         replace(s, misfit=float(f'{left[s.channel]:.3g}')) if s.channel in left else s
         for s in instrument.sensors

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.diagnose.enough import enough, KEPT
+from tendon_ros.diagnose.enough import BLOCK, enough, KEPT
+from tendon_ros.diagnose.gap import beyond_noise, noise_of, offs
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import encoder_channels
@@ -36,7 +37,6 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-BLOCK = 1.5  # [s] of a block that is held out, longer than an instrument remembers a disturbance
 #: part of what the contact force has against no wall that a wall of the file may leave
 NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
@@ -108,29 +108,21 @@ class Prepared:
         :param model: what is believed.
         :return: the problems with what stays of each channel as its misfit.
         """
-        segments = self.whole.rollouts.segments
-        predicted = self.whole.rollouts.predicted(self.whole.uses(model))
-        beyond: dict[str, list[FloatArray]] = {}
-        for segment, rows, masks in zip(segments, predicted, self.problem.masks, strict=True):
-            for m, row, mask in zip(segment.measured, rows, masks, strict=True):
-                own = ((m.value - row) ** 2 - m.noise**2)[mask]
-                beyond.setdefault(m.sensor.channel, []).append(own)
+        noise = noise_of(self.problem)
         misfit = {
-            channel: float(np.sqrt(max(0.0, float(np.mean(own)))))
-            for channel, parts in beyond.items()
-            if (own := np.concatenate(parts)).size
+            channel: beyond_noise(off.rms, noise[channel])
+            for channel, off in offs(self.problem, model).items()
         }
-        changed = [
+        segments = [
             replace(
                 segment,
                 measured=tuple(
                     replace(m, misfit=misfit.get(m.sensor.channel, 0.0)) for m in segment.measured
                 ),
             )
-            for segment in segments
+            for segment in self.whole.rollouts.segments
         ]
-        rollouts = self.whole.rollouts.like(changed)
-        return _problems(rollouts, self.noise, self.shift, self.looser)
+        return _problems(self.whole.rollouts.like(segments), self.noise, self.shift, self.looser)
 
     def moved(self, shift: int) -> Prepared:
         """

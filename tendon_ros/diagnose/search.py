@@ -25,6 +25,7 @@ from tendon_ros.diagnose.worth import (
     hopeless,
     LEAST,
     open_question,
+    outweighed,
     stands_out,
     worthwhile,
 )
@@ -102,7 +103,10 @@ class Search:
             state = self._steps.settled(model)
             found.states.append(state)
         if self._begun is not None and self._begun.causes and len(found.states) == 1:
-            earlier = self._again(found, self._begun)
+            # what was not worth having while others outweighed the channels that it shows in
+            earlier = self._of_many(found, self._begun) if self.problem.by_misfit else None
+            if earlier is None:
+                earlier = self._steps.pruned(found.start, self._steps.settled(self._begun))
             if self._believed(found, found.start, earlier):
                 state = earlier
                 found.states.append(state)
@@ -118,7 +122,7 @@ class Search:
                     screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
                 grown = self._of_many(found) if turn == 0 else None
-                if grown is not None and self._unweighed(found, grown):
+                if grown is not None and outweighed(self.problem, found.start, grown):
                     found.unweighed = grown
                     return found
                 if grown is None:
@@ -147,15 +151,6 @@ class Search:
         self._ordered(found)
         return found
 
-    def _again(self, found: Found, begun: Model) -> Fit:
-        """Return what is needed of what was found before, beside all that usually is there."""
-        thinned = None
-        # what was not worth having while other channels outweighed those that it shows in
-        if self.problem.by_misfit and far_off(self.problem, found.start):
-            self._steps.report('looking for what else usually is there', 0.04)
-            thinned = thinned_out(self._steps, found.start, MOST, begun)
-        return thinned or self._steps.pruned(found.start, self._steps.settled(begun))
-
     def _without_sign(self, found: Found) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
@@ -178,12 +173,6 @@ class Search:
             self.problem, found.start, found.final
         )
 
-    def _unweighed(self, found: Found, fit: Fit) -> bool:
-        """Return whether channels weigh by their noise where laws leave more than that."""
-        if self.problem.by_misfit or self.problem.structured(fit.left) < 1.0:
-            return False
-        return beyond_laws(self.problem, found.start, fit)
-
     def _from_the_file(self, found: Found) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
         file = self.problem.fitted(self.problem.empty, rounds=0)
@@ -199,11 +188,11 @@ class Search:
                 grown = better(self.problem, grown, alone)
         return grown
 
-    def _of_many(self, found: Found) -> Fit | None:
-        """Return what is needed of all that usually is there, if guesses ask for it."""
+    def _of_many(self, found: Found, known: Model | None = None) -> Fit | None:
+        """Return what is needed of what is known and usually there, if guesses ask for it."""
         if not far_off(self.problem, found.start):
             return None
-        fit = thinned_out(self._steps, found.start, MOST)
+        fit = thinned_out(self._steps, found.start, MOST, known)
         # where it leaves much, it is something else that is behind it
         if fit is None or hopeless(self.problem, found.start, fit):
             return None

@@ -201,6 +201,20 @@ def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
     return _beyond(problem, start, state) > MACHINE
 
 
+def outweighed(problem: Problem, start: Fit, state: Fit) -> bool:
+    """
+    Return whether channels weigh by their noise alone where laws leave more than that.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with all that was found.
+    :return: whether they should weigh by what stays of them.
+    """
+    if problem.by_misfit or problem.structured(state.left) < 1.0:
+        return False
+    return beyond_laws(problem, start, state)
+
+
 def _beyond(problem: Problem, start: Fit, state: Fit) -> float:
     """Return times what laws can be wrong by that is left."""
     return problem.structured(state.left) / (LEAST + form_power(problem, start, state))
