@@ -125,6 +125,7 @@ class RecorderNode(TendonNode):
             try:
                 if topic not in self._bag.counts:
                     self._bag.add_topic(topic, kind, self._offered(topic))
+                    self.get_logger().info(f'first message of {topic}')
             except RecordingError as error:
                 self._refuse(topic, str(error))
                 return

@@ -24,7 +24,7 @@ from tendon_ros.nodes.tendon_node import TendonNode
 from tendon_ros.nodes.trajectory import PROGRAM
 from tendon_ros.nodes.wire import wires_for
 
-#: how often to say that nothing is measured [s]
+#: how often to say what the start waits for [s]
 REMIND = 5.0
 
 #: motors this near to the first point need no smooth way to it [rad]
@@ -72,7 +72,6 @@ class TrajectoryNode(TendonNode):
     def close(self) -> None:
         """Stop sending; the motors hold the last set-point."""
         super().close()
-        self._heard.set()
         if self._thread.is_alive():
             self._thread.join()
 
@@ -118,24 +117,33 @@ class TrajectoryNode(TendonNode):
         self.finished = self._exit
 
     def _wait(self) -> bool:
-        """Return whether the motors have been heard, before patience or the node's life ended."""
+        """Return whether the motors speak and listen, before patience or the node's life ended."""
         begin = time.monotonic()
         said = begin
-        while not self._heard.wait(0.05):
+        # a command that nobody takes yet is lost, the first of a motion like any other
+        while not (self._heard.is_set() and self._commands.get_subscription_count()):
+            if self.stopping.wait(0.05):
+                return False
             now = time.monotonic()
             if self._patience and now - begin > self._patience:
                 self.failure = TrajectoryError(
-                    f'{self._ear.topic_name}: nothing measured for {self._patience:g} s; start '
+                    f'{self._missing()} for {self._patience:g} s; start '
                     'the simulator or the robot, or look for another namespace or ROS_DOMAIN_ID'
                 )
                 return False
             if now - said > REMIND:
                 said = now
                 self.get_logger().warning(
-                    f'waiting for {self._ear.topic_name} since {now - begin:.0f} s; is the '
-                    'simulator or the robot running, in this namespace and ROS_DOMAIN_ID?'
+                    f'{self._missing()} since {now - begin:.0f} s; is the simulator or the robot '
+                    'running, in this namespace and ROS_DOMAIN_ID?'
                 )
-        return not self.stopping.is_set()
+        return True
+
+    def _missing(self) -> str:
+        """Return what the start waits for."""
+        if not self._heard.is_set():
+            return f'{self._ear.topic_name}: nothing measured'
+        return f'{self._commands.topic_name}: nobody takes commands'
 
     def _stream(self, duration: float, at: Callable[[float], FloatArray]) -> None:
         """Send positions until the duration has passed; a late loop skips, it does not lag."""

@@ -16,10 +16,11 @@ LONG = 180.0
 
 @pytest.fixture(scope='session')
 def domain():
-    """Give this run a network of its own, and make wrong field types an error."""
+    """Give each process of the tests a network of its own, and make wrong field types an error."""
     pytest.importorskip('rclpy')
+    worker = int(os.environ.get('PYTEST_XDIST_WORKER', 'gw0').removeprefix('gw'))
     wanted = {
-        'ROS_DOMAIN_ID': str(random.randrange(1, 100)),
+        'ROS_DOMAIN_ID': str(10 * random.randrange(1, 10) + worker % 10),
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
         'ROS_PYTHON_CHECK_FIELDS': '1',
     }

@@ -58,17 +58,20 @@ def bag(launched, client, simulator, tmp_path_factory):
     # the recorder asks the nodes for their parameters; and it must hear all topics before the
     # estimator begins anew, which on a busy machine takes the discovery some seconds
     time.sleep(4.0)
-    trajectory = launched(
-        *('trajectory', '--trajectory', 'step', '--step.amplitude', '0.05'),
-        *('--step.duration', '2', '--approach', '0'),
-    )
-    # after each of several, for a busy machine may lose messages soon after any one of them
+    # after each of several, for a busy machine may lose messages soon after any one of them; and
+    # on such a machine the discovery of the commands may take longer than a whole trajectory
     begun_after = []
-    while trajectory.process.poll() is None:
-        answer = client.call(f'{NS}/estimator/reset', Trigger, Trigger.Request())
-        begun_after.append(int(answer.message.split()[-2]))
-        time.sleep(1.0)
-    assert trajectory.result() == 0, trajectory.said
+    while f'first message of {NS}/actuator/servo_jp' not in recorder.said:
+        trajectory = launched(
+            *('trajectory', '--trajectory', 'step', '--step.amplitude', '0.05'),
+            *('--step.duration', '2', '--approach', '0'),
+        )
+        while trajectory.process.poll() is None:
+            answer = client.call(f'{NS}/estimator/reset', Trigger, Trigger.Request())
+            begun_after.append(int(answer.message.split()[-2]))
+            time.sleep(1.0)
+        assert trajectory.result() == 0, trajectory.said
+        assert len(begun_after) < 100, recorder.said
     assert recorder.stop(signal.SIGTERM) == 0, recorder.said
     assert estimator.stop(signal.SIGINT) == 0, estimator.said
     reset(client)
@@ -335,6 +338,21 @@ def test_a_mistake_is_one_line_and_status_2(start, node, arguments, said, tmp_pa
     lines = [line for line in one.lines if not line.startswith('[INFO]')]
     assert said in lines[-1]
     assert len(lines) == 1, one.said
+
+
+def test_a_trajectory_waits_until_its_commands_reach_somebody(start, client):
+    one = start('trajectory', '--repeats', 0, '--ros-args', '-r', '__ns:=/alone')
+    motors = client.publisher('/alone/actuator/measured_js', JointState)
+    at = JointState(name=['pulley_M', 'pulley_L'], position=[0.0, 0.0])
+
+    def warned():
+        motors.publish(at)
+        return 'nobody takes commands' in one.said
+
+    client.wait(warned, 'nobody was missed')
+    heard = client.hear('/alone/actuator/servo_jp', JointState)
+    client.wait(lambda: heard, f'nothing was commanded:\n{one.said}')
+    assert one.stop() == 0, one.said
 
 
 def test_a_signal_ends_a_first_start_that_still_compiles(start, tmp_path, monkeypatch):
