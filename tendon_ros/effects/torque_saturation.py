@@ -2,13 +2,15 @@
 Torque saturation: the motor has a limit that the file does not know.
 
 The amplifier limits the current, or the supply the voltage; the torque that is commanded and
-reported does not arrive.
+reported does not arrive. Iron that saturates, and a voltage that falls under load, give way little
+by little: that is the knee. Without it the limit sets in at once.
 
-Equation::
+Equation, with u = |torque asked for| / limit, from u = 1 - knee to 1 + knee::
 
-    |torque on the pulley| <= min(limit of the file, limit)
+    |torque on the pulley| = limit (u - (u - 1 + knee)^2 / (4 knee))
 
-The neutral value is a torque that no instrument comes near.
+Below it is u limit, beyond it limit; a lower limit of the file holds without a knee. The neutral
+value is a torque that no instrument comes near.
 
 Source: definition.
 """
@@ -19,10 +21,12 @@ from tendon_ros.base.effect import Effect, Numbers
 from tendon_ros.base.parameter import Parameter
 
 
-def modify(numbers: Numbers, index: int, limit: float) -> None:
-    """Lower the limit of a motor."""
+def modify(numbers: Numbers, index: int, limit: float, knee: float) -> None:
+    """Lower the limit of a motor, which sets in over a knee."""
     values = numbers['motor_limit']
-    values[index] = min(values[index], limit)
+    if limit < values[index]:
+        values[index] = limit
+        numbers['motor_knee'][index] = knee
 
 
 EFFECT = Effect(
@@ -39,6 +43,16 @@ EFFECT = Effect(
             high=1000.0,
             typical=1.0,
             search='level',
+        ),
+        Parameter(
+            name='knee',
+            unit='1',
+            meaning='part of the limit, below and above it, over which it sets in',
+            neutral=0.0,
+            low=0.0,
+            high=0.6,
+            typical=0.05,
+            search='shape',
         ),
     ),
     modify=modify,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from tendon_ros.identify.loads import pressing
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.limiting import limited
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
 
@@ -36,8 +37,8 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
             gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
             limit = numbers['motor_limit'][j]
             given = gain * value[row] + bias
-            value[row] = np.clip(given, -limit, limit)
-            slope[row] = np.where(np.abs(given) < limit, gain * slope[row], 0.0)
+            value[row], part = limited(given, limit, float(numbers['motor_knee'][j]))
+            slope[row] *= gain * part
         if not motors:
             q, lever = pressing(instrument, pulley)
             _mend(value[row], slope[row], numbers, q, motion.step, lever)

@@ -14,6 +14,7 @@ from scipy.ndimage import find_objects, label
 
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.limiting import limited
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
 
@@ -95,6 +96,6 @@ def as_reported(
         limit = max(limit, usual(measured.sensor.of, gain, bias))
         asked = gain * found[row] + bias
         reported = measured.level
-        given = np.clip(gain * reported + bias, -limit, limit)
+        given, _ = limited(gain * reported + bias, limit, float(numbers['motor_knee'][j]))
         found[row] = reported + (asked - given) / gain
     return found

@@ -28,8 +28,8 @@ IntArray = NDArray[np.int64]
 
 #: numbers that stand in the kernel's arrays as they are, in the instrument's order
 PLAIN = ('contact_stiffness', 'contact_damping', 'contact_position', 'motor_gain', 'motor_bias',
-         'motor_limit', 'sensor_gain', 'sensor_offset', 'sensor_delay', 'scale', 'loop_damping',
-         'play')  # fmt: skip
+         'motor_limit', 'motor_knee', 'sensor_gain', 'sensor_offset', 'sensor_delay', 'scale',
+         'loop_damping', 'play')  # fmt: skip
 #: hooks whose laws act on pulleys, which the kernel has in an order of its own
 ON_PULLEYS = ('torque', 'budget', 'winding')
 

@@ -47,6 +47,7 @@ class Numbers:
             'motor_gain': np.ones(len(one.motors)),
             'motor_bias': np.zeros(len(one.motors)),
             'motor_limit': np.array([min(m.torque_limit, 1e300) for m in one.motors]),
+            'motor_knee': np.zeros(len(one.motors)),
             'motor_pulley': np.array([one.index(m.pulley) for m in one.motors]),
             'sensor_gain': np.ones(len(one.sensors)),
             'sensor_offset': np.zeros(len(one.sensors)),

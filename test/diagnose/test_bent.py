@@ -31,7 +31,7 @@ def test_what_is_no_cause(sound_problem, effect, place, values, bent):
 def test_a_limit_that_nearly_all_torques_pass_is_none(sound_problem, limit, excused):
     model = sound_problem.empty
     model = model.joined(Candidate('torque_gain', 'motor_M'), {'gain': 0.9})
-    model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit})
+    model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01})
     assert excuses(sound_problem, model, 1) is excused
     assert not excuses(sound_problem, model, 0)
 

@@ -78,7 +78,7 @@ def limited(body, measured_on):
     run = measured_on(body, (CUT.effect, CUT.place, {'limit': 0.06}), settings=WIDE)
     problem = prepared([run], body).problem
     start = problem.fitted(problem.empty)
-    return problem, start, problem.fitted(problem.empty.joined(CUT, {'limit': 0.06}))
+    return problem, start, problem.fitted(problem.empty.joined(CUT, {'limit': 0.06, 'knee': 0.01}))
 
 
 def test_laws_may_be_wrong_where_they_act_and_not_elsewhere(limited):

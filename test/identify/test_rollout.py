@@ -158,6 +158,14 @@ def test_a_limit_that_a_bias_passes_all_along_excuses_nothing(stopping, measured
     assert excused > 0.3 * without
 
 
+def test_a_limit_that_sets_in_over_a_knee_is_none_that_sets_in_at_once(bench, measured_on):
+    soft = ('torque_saturation', 'motor_L', {'limit': 0.5, 'knee': 0.5})
+    hard = ('torque_saturation', 'motor_L', {'limit': 0.5})
+    problem = prepared([measured_on(bench, soft)], bench).problem
+    assert misfit(problem, soft) < 1.2
+    assert misfit(problem) > misfit(problem, hard) > 2.0 * misfit(problem, soft)
+
+
 @pytest.mark.parametrize('late', [0.5, 1.0, 2.3])
 def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     body, problem_of = stopping

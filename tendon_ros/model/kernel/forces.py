@@ -7,14 +7,14 @@ here knows of five pulleys.
 
 from __future__ import annotations
 
-from tendon_ros.model.kernel.loops import clipped, pull, smooth, wind
+from tendon_ros.model.kernel.loops import clipped, limited, pull, smooth, wind
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, ACTIVE, AHEAD, ARM, BREAKAWAY, BRISTLE, BRISTLED, BUDGET, BUDGETS, BUDGET_L,
     BUDGET_W, COMMAND, CONTACT_ARM, CONTACT_DAMPING, CONTACT_LAW, CONTACT_ON,
     CONTACT_POSITION, CONTACT_PULLEY, CONTACT_RATIO, CONTACT_STIFFNESS, CURL, DAMPING,
     DITHER, DRIVE, DRIVEN, DRY, EPOCH, F, FORCE, FORCE_Q, FORCE_V, Floats, GAP, GEARED, INERTIA,
     INPUT, INTEGRAL, Ints, K, KD, KI, KP, LIMIT, LOAD, LOAD_T, LOAD_W, LOAD_WAY,
-    LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N,
+    LOOP_PULLEY, M, MODE, MOTION, MOTOR_BIAS, MOTOR_GAIN, MOTOR_KNEE, MOTOR_LIMIT, MOTOR_PULLEY, N,
     PUSH, PUSHED, RADIUS, REFERENCE, SIDE, STATE_A, STATE_B, STATE_RATE, STATE_T, STATE_Z,
     STILL, TENSION, TORQUE, TORQUES, TORQUE_T, TORQUE_W, TOTAL, TOUCH, TURN, U, WIDTH,
     budget_law, torque_law,
@@ -160,9 +160,9 @@ def drive(m: Floats, d: Ints, w: Floats, s: Floats, c: Floats, t: float, at: int
         torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
         c[COMMAND + j] = torque
         applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
-        w[INPUT + i] = clipped(applied, -m[MOTOR_LIMIT + j], m[MOTOR_LIMIT + j])
-        free = wish == torque and applied == w[INPUT + i]
-        gain = m[MOTOR_GAIN + j] if free else 0.0
+        w[INPUT + i], part = limited(applied, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+        free = wish == torque and part > 0.0
+        gain = m[MOTOR_GAIN + j] * part if free else 0.0
         w[TORQUE_T + i] -= gain * m[KP + j]
         w[TORQUE_W + i] -= gain * m[KD + j]
         w[STATE_RATE + z] = error if free else 0.0

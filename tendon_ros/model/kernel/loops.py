@@ -26,6 +26,15 @@ def clipped(value: float, low: float, high: float) -> float:
     return low if value < low else (high if value > high else value)
 
 
+def limited(torque: float, limit: float, knee: float) -> tuple[float, float]:
+    """Return the torque that a limited motor gives, and its slope by the one that is asked for."""
+    size = abs(torque)
+    width = max(knee, 1e-9) * limit
+    within = clipped((size - (limit - width)) / (2.0 * width), 0.0, 1.0)
+    given = min(size, limit - width) + 2.0 * width * within * (1.0 - 0.5 * within)
+    return (given if torque > 0.0 else -given), 1.0 - within
+
+
 def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
     """Return signal ``row`` at time t with its two derivatives: cubic Hermite, ends held."""
     rows = int(s[3])

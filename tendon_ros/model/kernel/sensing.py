@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from tendon_ros.model.kernel.events import state_at
 from tendon_ros.model.kernel.forces import evaluate, prescribe
-from tendon_ros.model.kernel.loops import clipped
+from tendon_ros.model.kernel.loops import clipped, limited
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, AHEAD, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
     Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
-    MOTOR_BIAS, MOTOR_GAIN, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
+    MOTOR_BIAS, MOTOR_GAIN, MOTOR_KNEE, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
     READINGS, REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
     SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SENSORS,
     SIDE, START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
@@ -175,7 +175,7 @@ def control(
             c[SUM + j] = total
         c[COMMAND + j] = torque
         applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
-        applied = clipped(applied, -m[MOTOR_LIMIT + j], m[MOTOR_LIMIT + j])
+        applied, _ = limited(applied, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
         w[TORQUE + i] += applied - w[INPUT + i]
         w[INPUT + i] = applied
         if g[MODE + i] == 0:

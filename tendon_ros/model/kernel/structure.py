@@ -69,6 +69,7 @@ CONTACT_ARM: int
 MOTOR_GAIN: int
 MOTOR_BIAS: int
 MOTOR_LIMIT: int
+MOTOR_KNEE: int
 KP: int
 KI: int
 KD: int
