@@ -12,6 +12,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
@@ -20,6 +23,8 @@ from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.identify.explanation import Model
+
+FloatArray = NDArray[np.float64]
 
 #: kinds of effect that may be alike: there are five of dry friction, and no family has more. Where
 #: still others do as well, all of them do badly
@@ -72,7 +77,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
     able = [k for k in range(len(causes)) if k not in undone]
-    together = companies(ready, found, weighed, able)
+    together = companies(ready, found, weighed, able, left)
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
@@ -93,20 +98,20 @@ def belief(ready: Prepared, found: Found) -> Belief:
     )
 
 
-def _left_without(ready: Prepared, found: Found, undone: Collection[int]) -> float:
-    """Return the structured misfit of the causes that do not undo each other, refitted."""
+def _left_without(ready: Prepared, found: Found, undone: Collection[int]) -> FloatArray:
+    """Return what the causes that do not undo each other leave, refitted."""
     final = found.final
     if undone:
         rest = ready.problem.fitted(final.model.without(*undone), rounds=6, accuracy=1e-2)
         final = rest if math.isfinite(rest.cost) else found.start
-    return ready.problem.structured(final.left)
+    return final.left
 
 
-def _weighed(ready: Prepared, found: Found, k: int, left: float, undone: bool) -> Weighed:
+def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bool) -> Weighed:
     """
     Return what speaks for one cause of the last state.
 
-    ``left``: structured misfit of all that may be believed; ``undone``: whether others undo it.
+    ``left``: what stays of all that may be believed; ``undone``: whether others undo it.
     """
     without = found.without[k]
     signs = signs_beside(ready.problem, found, without, left)

@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 import math
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -19,9 +21,12 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import probability, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.identify.fit import Fit, UNTIMED
+from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 
-#: times what each is missed alone that two causes must be missed together
+FloatArray = NDArray[np.float64]
+
+#: times what each is missed alone that two causes must be missed together, and times what a
+#: company and a further cause are missed apart
 MAKES_UP = 2.0
 
 
@@ -39,7 +44,11 @@ class Company:
 
 
 def companies(
-    ready: Prepared, found: Found, weighed: Sequence[Weighed], able: Sequence[int]
+    ready: Prepared,
+    found: Found,
+    weighed: Sequence[Weighed],
+    able: Sequence[int],
+    left: FloatArray,
 ) -> list[Company]:
     """
     Return what is certain of causes that are each uncertain.
@@ -48,40 +57,29 @@ def companies(
     :param found: what the search has found.
     :param weighed: its causes.
     :param able: which of them may make up for one another, sorted; events do for nothing.
+    :param left: what all that may be believed leaves, shape (samples,).
     :return: the companies that can be named.
     """
     problem, final = ready.problem, found.final
     causes = final.model.causes
     lasting = [k for k in able if not causes[k].instants]
     sure = {k for k in lasting if weighed[k].chance >= NAMED}
-    missed = {k: found.without[k].cost - final.cost for k in lasting}
-    known = problem.slopes(final)
-    fits: dict[tuple[int, ...], Fit] = {}
-
-    def without_all(members: tuple[int, ...]) -> Fit:
-        if members not in fits:
-            model = final.model.without(*members)
-            fits[members] = problem.fitted(model, rounds=6, accuracy=UNTIMED)
-        return fits[members]
-
-    def more_together(pair: tuple[int, int]) -> float:
-        alone = missed[pair[0]] + missed[pair[1]]
-        # careful fits only find less: most pairs are no company by a rough one
-        fit = problem.fitted(final.model.without(*pair), known, rounds=4, accuracy=1e-2)
-        if fit.cost - final.cost > MAKES_UP * alone:
-            fit = without_all(pair)
-        return fit.cost - final.cost - MAKES_UP * alone
-
+    alone = {k: found.without[k].cost - final.cost for k in lasting}
+    missed = _Missed(problem, final)
     pairs = [pair for pair in combinations(lasting, 2) if not sure.issuperset(pair)]
-    more = {pair: more_together(pair) for pair in pairs}
+    more = {pair: missed.more(pair, alone[pair[0]] + alone[pair[1]]) for pair in pairs}
+    sets = _components(_linked(more, sure), len(causes))
+    doubted = set(lasting) - sure - {k for members in sets for k in members}
     named = []
-    for members in _components(_linked(more, sure), len(causes)):
-        first, *others = sorted(members, key=lambda k: -missed[k])
-        without = without_all(members)
+    for pair in sets:
+        members = _grown(missed, pair, doubted, alone)
+        doubted -= set(members)
+        first, *others = sorted(members, key=lambda k: -alone[k])
+        without = missed.fit(members)
         if not math.isfinite(without.cost):
             continue
         # what undoes each other is not believed, and what stays is the same for all
-        signs = signs_beside(problem, found, without, weighed[first].signs.left)
+        signs = signs_beside(problem, found, without, left)
         likely = probability(signs)
         if likely < NAMED or spoils(ready, found, without):
             continue
@@ -91,6 +89,55 @@ def companies(
         whole = replace(weighed[first], equal=alike, signs=signs, chance=likely, without=without)
         named.append(Company((first, *others), whole))
     return named
+
+
+class _Missed:
+    """
+    Fits that do without several causes of a last state at once.
+
+    :param problem: the data.
+    :param final: the last state.
+    """
+
+    def __init__(self, problem: Problem, final: Fit) -> None:
+        self._problem = problem
+        self._final = final
+        self._known = problem.slopes(final)
+        self._fits: dict[tuple[int, ...], Fit] = {}
+
+    def fit(self, members: tuple[int, ...]) -> Fit:
+        """Return the fit without some causes, sorted."""
+        if members not in self._fits:
+            model = self._final.model.without(*members)
+            self._fits[members] = self._problem.fitted(model, rounds=6, accuracy=UNTIMED)
+        return self._fits[members]
+
+    def together(self, members: tuple[int, ...]) -> float:
+        """Return what causes are missed together."""
+        return self.fit(members).cost - self._final.cost
+
+    def more(self, members: tuple[int, ...], apart: float) -> float:
+        """Return what causes are missed together beyond a multiple of what parts of them are."""
+        # careful fits only find less: most are no company by a rough one
+        model = self._final.model.without(*members)
+        rough = self._problem.fitted(model, self._known, rounds=4, accuracy=1e-2)
+        beyond = rough.cost - self._final.cost - MAKES_UP * apart
+        return self.together(members) - MAKES_UP * apart if beyond > 0.0 else beyond
+
+
+def _grown(
+    missed: _Missed, members: tuple[int, ...], doubted: Collection[int], alone: Mapping[int, float]
+) -> tuple[int, ...]:
+    """Return a company with whoever makes up for it as its members make up for one another."""
+    while True:
+        own = missed.together(members)
+        wider = {k: tuple(sorted((*members, k))) for k in doubted if k not in members}
+        more = {k: missed.more(wider[k], own + alone[k]) for k in wider}
+        # what cannot be computed without all of them says nothing
+        goes = [k for k in sorted(more) if 0.0 < more[k] < math.inf]
+        if not goes:
+            return members
+        members = wider[max(goes, key=lambda k: more[k])]
 
 
 def _linked(more: Mapping[tuple[int, int], float], sure: Collection[int]) -> list[tuple[int, int]]:

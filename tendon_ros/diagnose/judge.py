@@ -9,6 +9,7 @@ regression (``python -m bench.calibrate``).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 import math
 
@@ -20,7 +21,7 @@ from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.worth import gains, TAKES_EVENT, TIMES_EVENT
+from tendon_ros.diagnose.worth import LEAST, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -29,32 +30,26 @@ FloatArray = NDArray[np.float64]
 @dataclass(frozen=True)
 class Signs:
     """
-    What speaks for a cause, all in noise power per sample.
+    What speaks for a cause, all in noise power per sample of the channels where it shows.
 
-    ``worth``: by how much the misfit grows when it alone is left out; ``in_one``: the same in the
-    channel where it shows most; ``left``: structured misfit that stays; ``explained``: what all
-    causes explain; ``form``: what their laws may leave of that; ``beside``: the same of the others
-    at its place. ``event``: it happened once.
+    Each channel counts by what the cause is worth there: what is wrong with another motor says
+    little of this one. ``worth``: by how much misfit grows when it alone is left out; ``left``:
+    structured misfit that stays, and a part of what stays of all channels; ``form``: what the laws
+    of all causes may leave; ``beside``: the same of the others at its place. ``event``: it
+    happened once.
     """
 
     worth: float
-    in_one: float
     left: float
-    explained: float
     form: float
     event: bool = False
     beside: float = 0.0
 
     @property
-    def most(self) -> float:
-        """What it is worth, over all samples or in the channel where it shows."""
-        return max(self.worth, self.in_one / 4.0, 1e-6)
-
-    @property
     def features(self) -> FloatArray:
         """Inputs of the logistic regression."""
         left = self.left / (LEFT_NOISE + self.form)
-        worth = self.most / (LEFT_NOISE + self.left)
+        worth = self.worth / (WORTH_NOISE + self.left)
         return np.array(
             [
                 1.0,
@@ -68,12 +63,17 @@ class Signs:
 #: misfit in units of what is usual below and beyond which it says nothing more
 LITTLE, MUCH = 0.3, 30.0
 #: times what stays that a cause is worth below and beyond which it says nothing more
-LEAST_WORTH, MOST_WORTH = 0.1, 100.0
+LEAST_WORTH, MOST_WORTH = 0.1, 1000.0
+#: power of what a model that diverges leaves
+BOUNDLESS = 1e12
 #: structured power that recordings without any effect may leave
 LEFT_NOISE = 0.05
-#: weights of the features, from 178 causes of 99 cases that are used up for anything else, by 1.44
-#: and less 0.62: what 246 probabilities of 145 later ones, used up by now, fell short of
-WEIGHTS = np.array([-0.92, -2.45, 2.13, -2.13])
+#: a third of what a cause must explain of the noise's power
+WORTH_NOISE = LEAST / 3.0
+#: part of what stays anywhere that counts against a cause: the unknown may be told by it, too
+ELSEWHERE = 0.1
+#: weights of the features, from 149 causes of 81 cases that are used up for anything else
+WEIGHTS = np.array([-2.48, -0.68, 2.44, -1.09])
 
 
 def probability(signs: Signs) -> float:
@@ -107,24 +107,33 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
-def signs_beside(problem: Problem, found: Found, without: Fit, left: float | None = None) -> Signs:
+def signs_beside(
+    problem: Problem, found: Found, without: Fit, left: FloatArray | None = None
+) -> Signs:
     """
     Return what speaks for what a fit does without.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param without: the fit without one cause, or without several that make up for one another.
-    :param left: structured misfit of all that may be believed; of the last state where None.
+    :param left: what all that may be believed leaves, shape (samples,); the last state's if None.
     :return: the signs.
     """
     final = found.final
-    samples = len(final.left)
-    left = problem.structured(final.left) if left is None else left
-    worth, in_one = gains(problem, without, final)
-    explained = (found.start.cost - final.cost) / samples
-    parts = form_parts(problem, found.start, final)
-    wrong = [float(np.mean(part)) for part in parts]
-    form = own_power(problem, found.start) + sum(wrong)
+    channels = problem.channels()
+    gain = {c: _power(without.left[own]) - _power(final.left[own]) for c, own in channels.items()}
+    gained = {c: max(0.0, gain[c]) * np.count_nonzero(own) for c, own in channels.items()}
+    every = max(float(sum(gained.values())), 1e-12)
+
+    def there(power: Mapping[str, float]) -> float:
+        return float(sum(power.get(c, 0.0) * gained[c] for c in channels)) / every
+
+    structured = problem.structured_by_channel(final.left if left is None else left)
+    stays = {c: power / max(count, 1) for c, (power, count) in structured.items()}
+    wrong = [
+        there({c: float(np.mean(part[own])) for c, own in channels.items()})
+        for part in form_parts(problem, found.start, final)
+    ]
     causes = final.model.causes
     gone = set(causes) - set(without.model.causes)
     event = any(cause.instants for cause in gone)
@@ -136,7 +145,15 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: float | Non
         for cause, power in zip(causes, wrong, strict=True)
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
-    return Signs(max(worth, 1e-9), in_one, left, explained, form, event, sum(kept))
+    form = own_power(problem, found.start) + sum(wrong)
+    whole = sum(p for p, _ in structured.values()) / max(len(final.left), 1)
+    stay = there(stays) + ELSEWHERE * whole
+    return Signs(max(there(gain), 1e-9), stay, form, event, sum(kept))
+
+
+def _power(left: FloatArray) -> float:
+    """Return the mean square of what is left; finite also of a model that diverges."""
+    return min(float(np.mean(left**2)), BOUNDLESS) if left.size else 0.0
 
 
 #: probability that a cause has at most which spoils what no fit saw, which others undo, or which
@@ -180,9 +197,9 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     likely = probability(signs)
     # of all times, one fits what a law gets wrong; but then the law is wrong at other times, too
     alone = signs.worth > TAKES_EVENT * (signs.worth + signs.left)
-    luck = signs.event and signs.most < TIMES_EVENT * signs.form and not alone
+    luck = signs.event and signs.worth < TIMES_EVENT * signs.form and not alone
     # and what a law gets wrong may be told by something else at its place
-    drowned = signs.most < signs.beside
+    drowned = signs.worth < signs.beside
     happened = bool(found.final.model.causes[k].instants)
     spoilt = not happened and spoils(ready, found, found.without[k])
     believed = not (spoilt or luck or drowned)

@@ -219,7 +219,19 @@ class Residuals:
         :param left: what is left, shape (samples,).
         :return: mean squares in noise deviations, noise taken off.
         """
-        power: dict[str, list[float]] = {}
+        power = self.structured_by_channel(left).values()
+        whole = sum(p for p, _ in power) / max(sum(count for _, count in power), 1)
+        return whole, max((p / count for p, count in power if count), default=0.0)
+
+    def structured_by_channel(self, left: FloatArray) -> dict[str, tuple[float, int]]:
+        """
+        Return the same of each channel, all recordings together.
+
+        :param left: what is left, shape (samples,).
+        :return: by channel a sum of squares in noise deviations, noise taken off, and of how many
+            samples.
+        """
+        found: dict[str, tuple[float, int]] = {}
         for n, c, own in self.groups(left):
             apart = neighbours(self._segments[n].period)
             if len(own) <= apart:
@@ -230,11 +242,9 @@ class Residuals:
             measured = self._segments[n].measured[c]
             shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
             beyond = float(own @ own) - max(noise, FLOOR * shaped * len(own))
-            entry = power.setdefault(measured.sensor.channel, [0.0, 0.0])
-            entry[0] += max(0.0, beyond)
-            entry[1] += len(own)
-        whole = sum(e[0] for e in power.values()) / max(sum(e[1] for e in power.values()), 1.0)
-        return whole, max((e[0] / e[1] for e in power.values() if e[1]), default=0.0)
+            power, count = found.get(measured.sensor.channel, (0.0, 0))
+            found[measured.sensor.channel] = power + max(0.0, beyond), count + len(own)
+        return found
 
     def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:
         """

@@ -1,12 +1,14 @@
 """What makes up for one another is named as a set; what spoils nothing is kept, named or not."""
 
 from dataclasses import replace
+import math
 
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
-from tendon_ros.diagnose.company import companies
+from tendon_ros.diagnose.company import _grown, companies, MAKES_UP
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
 from tendon_ros.diagnose.prepare import prepared
@@ -59,7 +61,7 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
     apart = [found.without[k].cost - found.final.cost for k in (0, 1)]
     both = ready.problem.fitted(found.final.model.without(0, 1)).cost - found.final.cost
     assert both > 2.0 * sum(apart)
-    [company] = companies(ready, found, judged.weighed, [0, 1])
+    [company] = companies(ready, found, judged.weighed, [0, 1], found.final.left)
     first = max((0, 1), key=lambda k: apart[k])
     assert company.members == (first, 1 - first)
     assert company.weighed.cause == found.final.model.causes[first]
@@ -70,10 +72,9 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
 def test_much_that_stays_without_what_undoes_each_other_speaks_against_a_company(alike):
     ready, found = alike
     weighed = belief(ready, found).weighed
-    [company] = companies(ready, found, weighed, [0, 1])
-    much = 10.0 * company.weighed.signs.worth
-    left = [replace(w, signs=replace(w.signs, left=much)) for w in weighed]
-    assert companies(ready, found, left, [0, 1]) == []
+    [company] = companies(ready, found, weighed, [0, 1], found.final.left)
+    much = np.full_like(found.final.left, math.sqrt(10.0 * company.weighed.signs.worth))
+    assert companies(ready, found, weighed, [0, 1], much) == []
 
 
 def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
@@ -81,19 +82,18 @@ def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
     weighed = list(belief(ready, found).weighed)
     chances = [0.9, 0.2, 0.9]
     judged = [replace(w, chance=c) for w, c in zip(weighed, chances, strict=True)]
-    [company] = companies(ready, found, judged, [0, 1, 2])
+    [company] = companies(ready, found, judged, [0, 1, 2], found.final.left)
     assert sorted(company.members) == [0, 1]
     # two that are named alone are told apart
     judged = [replace(w, chance=0.9) for w in weighed]
-    assert companies(ready, found, judged, [0, 1, 2]) == []
+    assert companies(ready, found, judged, [0, 1, 2], found.final.left) == []
 
 
 def test_causes_that_act_apart_are_no_company(alike):
     ready, found = alike
     weighed = belief(ready, found).weighed
-    assert companies(ready, found, weighed, [0, 2]) == []
-    assert companies(ready, found, weighed, [2]) == []
-    assert companies(ready, found, weighed, []) == []
+    for able in ([0, 2], [2], []):
+        assert companies(ready, found, weighed, able, found.final.left) == []
 
 
 def test_a_motor_is_at_the_place_of_its_pulley(found_of):
@@ -171,3 +171,21 @@ def test_what_is_doubted_is_in_the_instrument_and_said_apart(bench, measured_on,
     assert [(e.effect, e.place) for e in said.instrument.effects] == [('torque_gain', 'motor_L')]
     worst = said.diagnosis.gap[0]
     assert worst.after < 0.3 * worst.before
+
+
+@pytest.mark.parametrize(
+    ('three', 'members'), [(20.0, (0, 1, 2)), (13.0, (0, 1)), (math.inf, (0, 1))]
+)
+def test_who_makes_up_for_a_company_joins_it(three, members):
+    """Apart it is missed by 5 and 2: together with the third it has to be by more than 14."""
+
+    costs = {(0, 1): 5.0, (0, 1, 2): three, (0, 1, 3): 8.0, (0, 1, 2, 3): 21.0}
+
+    class Costs:
+        def together(self, members):
+            return costs[members]
+
+        def more(self, members, apart):
+            return costs[members] - MAKES_UP * apart
+
+    assert _grown(Costs(), (0, 1), {2, 3}, {2: 2.0, 3: 1.0}) == members

@@ -9,7 +9,7 @@ from tendon_ros.diagnose import judge
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.form import form_parts
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, IDLE, Signs, signs_beside, spoils
+from tendon_ros.diagnose.judge import chance, IDLE, probability, Signs, signs_beside, spoils
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -67,7 +67,7 @@ def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch,
 @pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
 def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believed):
     found = found_with(ready.problem, FRICTION)
-    signs = Signs(0.3, in_one=0.3, left=0.0, explained=5.0, form=1.0, beside=beside)
+    signs = Signs(0.3, left=0.0, form=1.0, beside=beside)
     assert (chance(ready, found, 0, signs) > IDLE) is believed
 
 
@@ -76,10 +76,26 @@ def test_the_law_beside_is_that_of_the_others_at_the_place(ready):
     bias = ('torque_bias', 'motor_M', {'torque': 0.01})
     found = found_with(ready.problem, FRICTION, viscous, bias)
     of = [signs_beside(ready.problem, found, without) for without in found.without]
-    parts = form_parts(ready.problem, found.start, found.final)
-    assert of[1].beside == pytest.approx(float(parts[0].mean()))
-    assert of[0].beside == pytest.approx(float(parts[1].mean()))
+    for part, signs in zip(
+        form_parts(ready.problem, found.start, found.final)[1::-1], of[:2], strict=True
+    ):
+        means = [float(part[own].mean()) for own in ready.problem.channels().values()]
+        assert min(means) < signs.beside < max(means)
     assert of[2].beside == 0.0
+
+
+def test_what_stays_of_another_motor_says_nothing_of_a_cause(ready, bench, measured_on):
+    gain = ('torque_gain', 'motor_L', {'gain': 1.1})
+    problem = prepared([measured_on(bench, gain)], bench).problem
+    found = found_with(problem, gain)
+    [without] = found.without
+    likely = {}
+    for channel, own in problem.channels().items():
+        left = found.final.left + np.where(own, 1.0, 0.0)
+        likely[channel] = probability(signs_beside(problem, found, without, left))
+    plain = probability(signs_beside(problem, found, without))
+    assert likely['actuator/pulley_M/effort'] > 0.8 * plain
+    assert likely['actuator/pulley_L/effort'] < 0.5 * plain
 
 
 def test_a_slip_from_the_first_happened_between_recordings(ready):
