@@ -36,7 +36,7 @@ class Signs:
     little of this one. ``worth``: by how much misfit grows when it alone is left out; ``left``:
     structured misfit that stays, and a part of what stays of all channels; ``form``: what the laws
     of all causes may leave; ``beside``: the same of the others at its place. ``event``: it
-    happened once.
+    happened once; ``part``: which part of what is left without it, of all channels, it explains.
     """
 
     worth: float
@@ -44,6 +44,7 @@ class Signs:
     form: float
     event: bool = False
     beside: float = 0.0
+    part: float = 1.0
 
     @property
     def features(self) -> FloatArray:
@@ -147,7 +148,9 @@ def signs_beside(
     form = own_power(problem, found.start) + sum(wrong)
     whole = sum(p for p, _ in structured.values()) / max(len(final.left), 1)
     stay = there(stays) + ELSEWHERE * whole
-    return Signs(max(there(gain), 1e-9), stay, form, event, sum(kept))
+    grown = max(0.0, _power(without.left) - _power(final.left))
+    part = grown / max(grown + whole, 1e-9)
+    return Signs(max(there(gain), 1e-9), stay, form, event, sum(kept), part)
 
 
 def _power(left: FloatArray) -> float:
@@ -195,7 +198,7 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     """
     likely = probability(signs)
     # of all times, one fits what a law gets wrong; but then the law is wrong at other times, too
-    alone = signs.worth > TAKES_EVENT * (signs.worth + signs.left)
+    alone = signs.part > TAKES_EVENT
     luck = signs.event and signs.worth < TIMES_EVENT * signs.form and not alone
     # and what a law gets wrong may be told by something else at its place
     drowned = signs.worth < signs.beside

@@ -44,8 +44,8 @@ PROGRAM = Program(
         Setting(
             'patience',
             0.0,
-            'give up with status 2 where nothing is measured, or nobody takes commands, for so long; '
-            '0 waits for ever',
+            'give up with status 2 where nothing is measured, or nobody takes commands, for so '
+            'long; 0 waits for ever',
             's',
             0.0,
             3600.0,

@@ -103,3 +103,12 @@ def test_a_slip_from_the_first_happened_between_recordings(ready):
     slip = Candidate('cable_slip', 'cable_12')
     assert degenerate(ready.problem, slip, values)
     assert not degenerate(ready.problem, replace(slip, only='b'), values)
+
+
+@pytest.mark.parametrize(('part', 'believed'), [(0.75, False), (0.9, True)])
+def test_what_happens_once_beside_what_a_law_gets_wrong_at_other_times_is_luck(
+    ready, part, believed
+):
+    found = found_with(ready.problem, FRICTION)
+    signs = Signs(8.0, left=0.1, form=1.0, event=True, part=part)
+    assert (chance(ready, found, 0, signs) > IDLE) is believed
