@@ -71,8 +71,8 @@ def companies(
     sets = _components(_linked(more, sure), len(causes))
     doubted = set(lasting) - sure - {k for members in sets for k in members}
     named = []
-    for pair in sets:
-        members = _grown(missed, pair, doubted, alone)
+    for linked in sets:
+        members = _grown(missed, linked, doubted, alone)
         doubted -= set(members)
         first, *others = sorted(members, key=lambda k: -alone[k])
         without = missed.fit(members)

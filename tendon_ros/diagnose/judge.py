@@ -21,7 +21,7 @@ from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.worth import TAKES_EVENT, TIMES_EVENT
+from tendon_ros.diagnose.worth import by_channel, gains, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -120,18 +120,21 @@ def signs_beside(
     :return: the signs.
     """
     final = found.final
+    left = final.left if left is None else left
     channels = problem.channels()
-    gain = {c: _power(without.left[own]) - _power(final.left[own]) for c, own in channels.items()}
+    then, last = (by_channel(problem, fit.left) for fit in (without, final))
+    # finite also of a model that diverges
+    gain = {c: min(then[c], BOUNDLESS) - last[c] for c in channels}
     gained = {c: max(0.0, gain[c]) * np.count_nonzero(own) for c, own in channels.items()}
     every = max(float(sum(gained.values())), 1e-12)
 
     def there(power: Mapping[str, float]) -> float:
         return float(sum(power.get(c, 0.0) * gained[c] for c in channels)) / every
 
-    structured = problem.structured_by_channel(final.left if left is None else left)
+    structured = problem.structured_by_channel(left)
     stays = {c: power / max(count, 1) for c, (power, count) in structured.items()}
     wrong = [
-        there({c: float(np.mean(part[own])) for c, own in channels.items()})
+        there(by_channel(problem, np.sqrt(part)))
         for part in form_parts(problem, found.start, final)
     ]
     causes = final.model.causes
@@ -146,16 +149,16 @@ def signs_beside(
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
     form = own_power(problem, found.start) + sum(wrong)
-    whole = sum(p for p, _ in structured.values()) / max(len(final.left), 1)
-    stay = there(stays) + ELSEWHERE * whole
-    grown = max(0.0, _power(without.left) - _power(final.left))
-    part = grown / max(grown + whole, 1e-9)
-    return Signs(max(there(gain), 1e-9), stay, form, event, sum(kept), part)
-
-
-def _power(left: FloatArray) -> float:
-    """Return the mean square of what is left; finite also of a model that diverges."""
-    return min(float(np.mean(left**2)), BOUNDLESS) if left.size else 0.0
+    whole = problem.structured(left)
+    grown = min(gains(problem, without, final)[0], BOUNDLESS)
+    return Signs(
+        worth=max(there(gain), 1e-9),
+        left=there(stays) + ELSEWHERE * whole,
+        form=form,
+        event=event,
+        beside=sum(kept),
+        part=grown / max(grown + whole, 1e-9),
+    )
 
 
 #: probability that a cause has at most which spoils what no fit saw, which others undo, or which

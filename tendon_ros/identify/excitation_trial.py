@@ -25,7 +25,7 @@ from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
-from tendon_ros.model.limiting import limited
+from tendon_ros.model.limiting import given_by
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import along, follow
@@ -225,7 +225,6 @@ def _add_cut_off(
         if channel.sensor.kind == 'motor_torque':
             j = instrument.motor_names.index(channel.sensor.of)
             gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-            limit = numbers['motor_limit'][j]
-            wanted = gain * reported[: len(row), j] + bias
-            given, _ = limited(wanted, limit, float(numbers['motor_knee'][j]))
-            row += (wanted - given) / gain
+            wanted = reported[: len(row), j]
+            given, _ = given_by(numbers, j, wanted)
+            row += wanted - (given - bias) / gain

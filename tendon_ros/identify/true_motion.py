@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tendon_ros.identify.loads import pressing
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.limiting import limited
+from tendon_ros.model.limiting import given_by
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
 
@@ -34,11 +34,8 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
     for row, pulley in enumerate(segment.pushed, start=len(segment.prescribed)):
         motors = [j for j, m in enumerate(instrument.motors) if m.pulley == pulley]
         for j in motors:
-            gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-            limit = numbers['motor_limit'][j]
-            given = gain * value[row] + bias
-            value[row], part = limited(given, limit, float(numbers['motor_knee'][j]))
-            slope[row] *= gain * part
+            value[row], part = given_by(numbers, j, value[row])
+            slope[row] *= part
         if not motors:
             q, lever = pressing(instrument, pulley)
             _mend(value[row], slope[row], numbers, q, motion.step, lever)

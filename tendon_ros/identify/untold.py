@@ -14,7 +14,7 @@ from scipy.ndimage import find_objects, label
 
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.limiting import limited
+from tendon_ros.model.limiting import given_by
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
 
@@ -88,14 +88,13 @@ def as_reported(
         if measured.sensor.kind != 'motor_torque':
             continue
         j = names.index(measured.sensor.of)
-        limit = numbers['motor_limit'][j]
-        if limit >= 1e3:
+        if numbers['motor_limit'][j] >= 1e3:
             continue
         # a limit that nearly all torques passed is none: it would excuse whatever the model asks
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-        limit = max(limit, usual(measured.sensor.of, gain, bias))
+        least = usual(measured.sensor.of, gain, bias)
         asked = gain * found[row] + bias
         reported = measured.level
-        given, _ = limited(gain * reported + bias, limit, float(numbers['motor_knee'][j]))
+        given, _ = given_by(numbers, j, reported, least)
         found[row] = reported + (asked - given) / gain
     return found
