@@ -24,6 +24,7 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import loosest, Rollouts
 from tendon_ros.identify.segment import (
+    ENDING,
     loaded,
     Segment,
     segment_of,
@@ -173,7 +174,7 @@ def _thinned(recording: Recording, instrument: Instrument) -> Recording:
 
 def _problems(rollouts: Rollouts, noise: Noise, shift: int = 0, looser: float = 1.0) -> Prepared:
     segments = rollouts.segments
-    usable = [s.time > SETTLING for s in segments]
+    usable = [(s.time > SETTLING) & (s.time < s.time[-1] - ENDING) for s in segments]
     held = held_out(segments, shift)
     moving = tolerances(rollouts.instrument, looser)
     return Prepared(
