@@ -40,13 +40,18 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
     :param state: with causes.
     :return: which causes.
     """
-    count = len(state.model.causes)
-    if count < 2:
+    causes = state.model.causes
+    if len(causes) < 2:
         return frozenset()
-    changes = np.array([change(problem, state, k) for k in range(count)])
+    changes = np.array([change(problem, state, k) for k in range(len(causes))])
     changes = np.where(np.isfinite(changes), changes, 0.0)
     channels = problem.channels().values()
-    return undone(changes) | conspiring([changes[:, samples] for samples in channels])
+    happened = np.array([bool(cause.instants) for cause in causes])
+    found: frozenset[int] = frozenset()
+    for alike in (happened, ~happened):
+        among = changes * alike[:, None]
+        found |= undone(among) | conspiring([among[:, samples] for samples in channels])
+    return found
 
 
 def undone(changes: FloatArray) -> frozenset[int]:

@@ -1,6 +1,7 @@
 """Large effects whose small difference imitates another one are no causes."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -62,6 +63,22 @@ def test_little_stays_of_what_is_undone(changes, rows):
 )
 def test_nothing_is_left_of_those_that_conspire(channels, rows):
     assert conspiring([np.array(changes) for changes in channels]) == set(rows)
+
+
+@pytest.mark.parametrize(
+    ('second', 'which'),
+    [
+        # a cable that slips gives an offset's tension back, but before it did the offset was alone
+        (Candidate('cable_slip', 'cable_12'), set()),
+        (Candidate('pretension', 'cable_12'), {0, 1}),
+    ],
+)
+def test_what_happens_at_a_time_undoes_nothing_that_lasts(monkeypatch, second, which):
+    causes = (Candidate('encoder_offset', 'encoder_L'), second)
+    changes = [WAVE, 0.2 * OTHER - WAVE]
+    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    state = SimpleNamespace(model=SimpleNamespace(causes=causes))
+    assert undoing(SimpleNamespace(channels=dict), state) == which
 
 
 @pytest.fixture(scope='module')
