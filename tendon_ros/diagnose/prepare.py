@@ -7,7 +7,7 @@ each recording.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -38,6 +38,9 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+#: times the force of the file's walls that those of a recording may have: another stiffness, or
+#: an encoder whose zero moves the wall, is looked for later
+SIZES = np.geomspace(0.2, 5.0, 9)
 #: part of what the contact force has against no wall that a wall of the file may leave
 NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
@@ -211,35 +214,50 @@ def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
 def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> Segment:
     """Return a segment with what the tip met, and the pose from which the motion began."""
     names = segment.contacts
-    best, least, force, free = segment, np.inf, 0.0, 0.0
+    free = _posed(instrument, replace(segment, contacts=names[3:]))
+    nothing = _predicted(instrument, free)
+    best, least, predicted = free, np.inf, nothing
     for there in product((True, False), repeat=min(len(names), 3)):
         kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
-        trial = _posed(instrument, replace(segment, contacts=kept))
-        off = _misfits(instrument, trial)
-        misfit = sum(off.values())
-        # the last is that without a wall; a cell whose bias is in the file reads something there
-        free = max((off[c] for c in off if c.startswith('load_cell/')), default=0.0)
+        trial = _posed(instrument, replace(segment, contacts=kept)) if any(there) else free
+        rows = _predicted(instrument, trial) if any(there) else nothing
+        sizes = SIZES if any(there) else [1.0]
+        misfit = min(
+            sum(_misfits(segment, nothing + size * (rows - nothing)).values()) for size in sizes
+        )
         if misfit < 0.999 * least:
-            best, least, force = trial, misfit, free
-    if force > NO_WALL * free:
+            best, least, predicted = trial, misfit, rows
+    # a cell whose bias is in the file reads something where nothing was met
+    met, not_met = (_forces(_misfits(segment, rows)) for rows in (predicted, nothing))
+    if met > NO_WALL * not_met:
         pushed = loaded(instrument, recording, segment)
         if pushed is not None and pushed.measured:
             pushed = _posed(instrument, pushed)
             # the noise or the bias of a cell that touches nothing has no wall either
-            others = _misfits(instrument, pushed)
-            before = sum(m for c, m in _misfits(instrument, best).items() if c in others)
+            others = _misfits(pushed, _predicted(instrument, pushed))
+            before = sum(m for c, m in _misfits(segment, predicted).items() if c in others)
             if sum(others.values()) < FELT * before:
                 return pushed
     return best
 
 
-def _misfits(instrument: Instrument, segment: Segment) -> dict[str, float]:
+def _predicted(instrument: Instrument, segment: Segment) -> FloatArray:
+    """Return the channels of a segment as the instrument file has them."""
+    [predicted] = Rollouts(instrument, [segment]).predicted([[]])
+    return predicted
+
+
+def _forces(misfits: Mapping[str, float]) -> float:
+    """Return the part of the contact forces that is wrong, of the channel where it is most."""
+    return max((m for c, m in misfits.items() if c.startswith('load_cell/')), default=0.0)
+
+
+def _misfits(segment: Segment, predicted: FloatArray) -> dict[str, float]:
     """
-    Return the part of each channel's variance that the instrument file gets wrong.
+    Return the part of each channel's variance that a prediction gets wrong.
 
     A sensor that loses its sign is right in size: it must not deny a wall that is there.
     """
-    [predicted] = Rollouts(instrument, [segment]).predicted([[]])
     found = {}
     for row, measured in zip(predicted, segment.measured, strict=True):
         known = np.isfinite(measured.value)

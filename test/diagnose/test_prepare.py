@@ -43,6 +43,21 @@ def test_contacts_are_found_without_a_load_cell(bench, pressed, free, only):
     assert second.contacts == ()
 
 
+@pytest.mark.parametrize('scale', [0.3, 3.0])
+@pytest.mark.parametrize('angle', [-0.04, 0.02])
+def test_a_wall_that_presses_with_another_force_was_met(bench, measured_on, only, scale, angle):
+    run = measured_on(
+        bench,
+        ('contact_stiffness', 'contact', {'scale': scale}),
+        ('encoder_offset', 'encoder_L', {'angle': angle}),
+        trajectory='paper_fig12',
+        settings=(),
+        touching=True,
+    )
+    [segment] = prepared(only([run], 'actuator/'), bench).whole.rollouts.segments
+    assert segment.contacts == ('tip',)
+
+
 @pytest.mark.parametrize('bias', [0.0, 0.5])
 def test_a_cell_that_touches_nothing_does_not_push(bench, free, bias):
     cell = free['load_cell/force']
