@@ -19,7 +19,7 @@ from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
 from tendon_ros.identify.excitation_rig import ACCURACY, performed, touching
-from tendon_ros.identify.segment import Segment, SETTLING
+from tendon_ros.identify.segment import ENDING, Segment, SETTLING
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.identify.true_motion import true_motion
@@ -85,7 +85,7 @@ class Trial:
         rows, period = performed(rig, motion.trajectory(instrument.motor_names))
         names = [s.channel for s in instrument.sensors]
         angles = rows.reading[:, [names.index(c) for c in motor_channels(instrument)]].T
-        self._used = slice(round(SETTLING / period), None)
+        self._used = slice(round(SETTLING / period), -max(1, round(ENDING / period)))
         self._drive = self._driven(angles, rows.effort, period)
         self._said = self._predicted([self._truth])
         plain = self._predicted([])
