@@ -7,7 +7,7 @@ each recording.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -26,6 +26,7 @@ from tendon_ros.identify.rollout import loosest, Rollouts
 from tendon_ros.identify.segment import (
     ENDING,
     loaded,
+    Measured,
     Segment,
     segment_of,
     SETTLING,
@@ -39,8 +40,11 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: times the force of the file's walls that those of a recording may have: another stiffness, or
-#: an encoder whose zero moves the wall, is looked for later
+#: an encoder whose zero moves the wall, is looked for later; and part of what no wall has wrong
+#: that they may leave, for a small force imitates a bias
 SIZES = np.geomspace(0.2, 5.0, 9)
+RESIZED = 0.5
+STILL = 1e-3  # part of what a channel reads that is no motion
 #: part of what the contact force has against no wall that a wall of the file may leave
 NO_WALL = 0.6
 #: part that a load which truly pushes leaves of what the other channels have against its absence
@@ -216,15 +220,16 @@ def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> S
     names = segment.contacts
     free = _posed(instrument, replace(segment, contacts=names[3:]))
     nothing = _predicted(instrument, free)
+    without = _misfit(segment, nothing)
     best, least, predicted = free, np.inf, nothing
     for there in product((True, False), repeat=min(len(names), 3)):
         kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
         trial = _posed(instrument, replace(segment, contacts=kept)) if any(there) else free
         rows = _predicted(instrument, trial) if any(there) else nothing
-        sizes = SIZES if any(there) else [1.0]
-        misfit = min(
-            sum(_misfits(segment, nothing + size * (rows - nothing)).values()) for size in sizes
-        )
+        misfit = _misfit(segment, rows)
+        resized = min(_misfit(segment, nothing + size * (rows - nothing)) for size in SIZES)
+        if resized < RESIZED * without:
+            misfit = min(misfit, resized)
         if misfit < 0.999 * least:
             best, least, predicted = trial, misfit, rows
     # a cell whose bias is in the file reads something where nothing was met
@@ -252,21 +257,37 @@ def _forces(misfits: Mapping[str, float]) -> float:
     return max((m for c, m in misfits.items() if c.startswith('load_cell/')), default=0.0)
 
 
-def _misfits(segment: Segment, predicted: FloatArray) -> dict[str, float]:
+def _misfit(segment: Segment, predicted: FloatArray) -> float:
     """
-    Return the part of each channel's variance that a prediction gets wrong.
+    Return the parts that a prediction gets wrong of all that moves in channels, added up.
 
-    A sensor that loses its sign is right in size: it must not deny a wall that is there.
+    Zeros may be off: a bias or a gravity torque is nearly a wall that presses all the time. A
+    sensor that loses its sign is right in size: it must not deny a wall that is there.
     """
-    found = {}
+    found = 0.0
+    for measured, said, value in _compared(segment, predicted):
+        moves = np.var(value) + np.mean(measured.noise**2) + STILL**2 * np.mean(value**2)
+        off = min(np.var(said - value), np.mean((np.abs(said) - np.abs(value)) ** 2))
+        found += float(off / (moves + 1e-30))
+    return found
+
+
+def _misfits(segment: Segment, predicted: FloatArray) -> dict[str, float]:
+    """Return the part of each channel's power that a prediction gets wrong."""
+    return {
+        measured.sensor.channel: float(np.mean((said - value) ** 2) / (np.mean(value**2) + 1e-30))
+        for measured, said, value in _compared(segment, predicted)
+    }
+
+
+def _compared(
+    segment: Segment, predicted: FloatArray
+) -> Iterator[tuple[Measured, FloatArray, FloatArray]]:
+    """Yield channels with what a prediction says and what they read, where they read anything."""
     for row, measured in zip(predicted, segment.measured, strict=True):
         known = np.isfinite(measured.value)
         if known.sum() > 2:
-            said, value = row[known], measured.value[known]
-            off = min(np.mean((said - value) ** 2), np.mean((np.abs(said) - np.abs(value)) ** 2))
-            scale = float(np.mean(value**2)) + 1e-30
-            found[measured.sensor.channel] = float(off) / scale
-    return found
+            yield measured, row[known], measured.value[known]
 
 
 def _posed(instrument: Instrument, segment: Segment) -> Segment:

@@ -58,6 +58,20 @@ def test_a_wall_that_presses_with_another_force_was_met(bench, measured_on, only
     assert segment.contacts == ('tip',)
 
 
+def test_a_bias_is_no_wall(bench, measured_on, only):
+    runs = [
+        measured_on(
+            bench,
+            ('torque_bias', 'motor_L', {'torque': bias}),
+            ('coulomb_friction', 'pulley_M', {'torque': 0.2}),
+            name=f'{bias:g}',
+        )
+        for bias in (-0.5, -0.25, 0.25, 0.5)
+    ]
+    for segment in prepared(only(runs, 'actuator/'), bench).whole.rollouts.segments:
+        assert segment.contacts == ()
+
+
 @pytest.mark.parametrize('bias', [0.0, 0.5])
 def test_a_cell_that_touches_nothing_does_not_push(bench, free, bias):
     cell = free['load_cell/force']
