@@ -261,23 +261,28 @@ def _misfit(segment: Segment, predicted: FloatArray) -> float:
     """
     Return the parts that a prediction gets wrong of all that moves in channels, added up.
 
-    Zeros may be off: a bias or a gravity torque is nearly a wall that presses all the time. A
-    sensor that loses its sign is right in size: it must not deny a wall that is there.
+    Zeros may be off: a bias or a gravity torque is nearly a wall that presses all the time.
     """
     found = 0.0
     for measured, said, value in _compared(segment, predicted):
         moves = np.var(value) + np.mean(measured.noise**2) + STILL**2 * np.mean(value**2)
-        off = min(np.var(said - value), np.mean((np.abs(said) - np.abs(value)) ** 2))
+        off = min(np.var(said - value), _in_size(said, value))
         found += float(off / (moves + 1e-30))
     return found
 
 
 def _misfits(segment: Segment, predicted: FloatArray) -> dict[str, float]:
     """Return the part of each channel's power that a prediction gets wrong."""
-    return {
-        measured.sensor.channel: float(np.mean((said - value) ** 2) / (np.mean(value**2) + 1e-30))
-        for measured, said, value in _compared(segment, predicted)
-    }
+    found = {}
+    for measured, said, value in _compared(segment, predicted):
+        off = min(float(np.mean((said - value) ** 2)), _in_size(said, value))
+        found[measured.sensor.channel] = off / (float(np.mean(value**2)) + 1e-30)
+    return found
+
+
+def _in_size(said: FloatArray, value: FloatArray) -> float:
+    """Return what is wrong without a sign: a sensor that loses it must not deny a wall."""
+    return float(np.mean((np.abs(said) - np.abs(value)) ** 2))
 
 
 def _compared(
