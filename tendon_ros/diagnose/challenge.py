@@ -20,12 +20,14 @@ from tendon_ros.diagnose.parts import plain
 from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Screen, Seen
 
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 REPLACED = 6  # causes at most that challenges replace
+BETTER = 0.99  # part of the cost that what is no simpler must leave
 CREEPING = 20  # rounds at most in which a fit comes to its end
 
 
@@ -54,6 +56,7 @@ class Challenge:
         :param brief: whether only rivals matter that are far better.
         """
         self._merge(found)
+        self._divide(found)
         self._near = {}
         changed = bool(self._stood)
         replaced = 0
@@ -127,6 +130,37 @@ class Challenge:
             if rivals and self._as_good(rivals[0].fit, state):
                 self._stood = {}
                 found.states[-1] = self._steps.settled(rivals[0].fit.model)
+
+    def _divide(self, found: Found) -> None:
+        """
+        Let effects that together do the same take the place of one, if they do better.
+
+        A motor's bias beside Coulomb friction is friction that differs by direction, but where the
+        motor rests.
+        """
+        instrument = self._problem.rollouts.instrument
+        for cause in found.final.model.causes:
+            state = found.final
+            causes = state.model.causes
+            together = find(cause.effect).alike
+            if together is None or cause.given:
+                continue
+            sizes = together(**state.model.values(causes.index(cause)))
+            parts = [
+                c
+                for c in self._steps.candidates
+                if c.effect in sizes and c not in causes and of_one_body(instrument, cause, c)
+            ]
+            if len(parts) < len(sizes):
+                continue
+            model = state.model.without(causes.index(cause))
+            for part in parts:
+                [parameter] = part.parameters
+                model = model.joined(part, {parameter.name: sizes[part.effect]})
+            divided = self._problem.fitted(model, self._problem.slopes(state), CREEPING, 1e-3)
+            if divided.cost < BETTER * state.cost:
+                self._stood = {}
+                found.states[-1] = divided
 
     def _as_good(self, simpler: Fit, state: Fit) -> bool:
         """
@@ -231,7 +265,7 @@ class Challenge:
                 return self._as_good(fit, state)
             if more > 0:
                 return ahead > tie(self._problem, fit)
-            return fit.cost < 0.99 * state.cost
+            return fit.cost < BETTER * state.cost
 
         for rival in rivals[:2]:
             if wins(rival.candidate, rival.fit):
