@@ -1,5 +1,7 @@
 """Who has stood meets again only the rivals that came near, and those that were replaced."""
 
+import pytest
+
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.prepare import prepared
@@ -60,3 +62,35 @@ def test_a_brief_challenge_finds_who_is_far_better_with_fewer_fits(bench, measur
         assert found.final.model.causes == (COULOMB,)
         fitted[brief] = len(found.rivals[0])
     assert fitted[True] < fitted[False]
+
+
+BIASED = Candidate('torque_bias', 'motor_L')
+
+
+@pytest.mark.parametrize(
+    ('there', 'causes'),
+    [
+        # after a reversal friction builds up about the bias
+        (
+            [
+                ('presliding_friction', 'pulley_L', {'torque': 0.2, 'angle': 2e-3}),
+                ('torque_bias', 'motor_L', {'torque': 0.15}),
+            ],
+            {Candidate('coulomb_friction', 'pulley_L'), BIASED},
+        ),
+        (
+            [('asymmetric_friction', 'pulley_L', {'forward': 0.05, 'backward': 0.35})],
+            {Candidate('asymmetric_friction', 'pulley_L')},
+        ),
+    ],
+)
+def test_friction_that_differs_by_direction_is_told_from_a_bias(bench, measured_on, there, causes):
+    problem = prepared([measured_on(bench, *there)], bench).problem
+    wrong = Candidate('asymmetric_friction', 'pulley_L')
+    begun = problem.empty.joined(wrong, {'forward': 0.05, 'backward': 0.35})
+    found = Found()
+    found.states += [problem.fitted(problem.empty), problem.fitted(begun)]
+    friction = Candidate('coulomb_friction', 'pulley_L')
+    steps = Steps(problem, [friction, wrong, BIASED], 1, lambda *_: None)
+    Challenge(steps, {}).of(found)
+    assert set(found.final.model.causes) == causes
