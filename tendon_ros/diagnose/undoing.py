@@ -24,8 +24,9 @@ FloatArray = NDArray[np.float64]
 
 #: cosine of what two causes do below which they are opposed
 OPPOSED = -0.5
-#: times the power of what they do together that opposed causes do each alone, all added up
-UNDONE = 3.0
+#: times the power of what they do together that opposed causes do each alone, all added up: true
+#: ones that happen to be opposed do three times, those that imitate seven times and more
+UNDONE = 5.0
 #: the same in one channel, where something else may show in others
 HUSHED = 20.0
 #: causes from which on it is no chance that nothing is left of them in a channel
