@@ -135,8 +135,8 @@ class Challenge:
         """
         Let effects that together do the same take the place of one, if they do better.
 
-        A motor's bias beside Coulomb friction is friction that differs by direction, but while that
-        builds up after a reversal.
+        A motor's bias beside Coulomb friction is friction that differs by direction, but while
+        that builds up after a reversal.
         """
         instrument = self._problem.rollouts.instrument
         for cause in found.final.model.causes:

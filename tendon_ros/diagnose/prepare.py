@@ -1,15 +1,9 @@
-"""
-From admitted recordings to a least-squares problem: bins, contacts, noise, what is held out.
-
-Contacts belong to the surroundings, not to the instrument: whether the tip met one is found for
-each recording.
-"""
+"""From admitted recordings to a least-squares problem: bins, walls, noise, what is held out."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,37 +12,19 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.enough import BLOCK, enough, KEPT
 from tendon_ros.diagnose.gap import beyond_noise, noise_of, offs
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
+from tendon_ros.diagnose.walls import placed
 from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import loosest, Rollouts
-from tendon_ros.identify.segment import (
-    ENDING,
-    loaded,
-    Measured,
-    Segment,
-    segment_of,
-    SETTLING,
-    thinned,
-)
+from tendon_ros.identify.segment import ENDING, Segment, segment_of, SETTLING, thinned
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-#: times the force of the file's walls that those of a recording may have: another stiffness, or
-#: an encoder whose zero moves the wall, is looked for later; and part of what no wall has wrong
-#: that they may leave, for a small force imitates a bias
-SIZES = np.geomspace(0.2, 5.0, 9)
-RESIZED = 0.5
-STILL = 1e-3  # part of what a channel reads that is no motion
-#: part of what the contact force has against no wall that a wall of the file may leave
-NO_WALL = 0.6
-#: part that a load which truly pushes leaves of what the other channels have against its absence
-FELT = 0.8
 QUIETER = 2.0  # times less noise that call for another look
 WHOLE = 6  # recordings from which on whole ones are held out
 
@@ -163,7 +139,7 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     recordings = [_thinned(r, instrument) for r in recordings]
     period = bin_length(recordings, instrument)
     segments = [segment_of(instrument, r, period) for r in recordings]
-    segments = [_placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
+    segments = [placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
     predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
     noise = noise_of_counts(instrument, segments, recordings, predicted)
     segments = noise.given(segments, predicted)
@@ -213,105 +189,3 @@ def held_out(segments: Sequence[Segment], shift: int = 0) -> list[BoolArray]:
         (np.floor(s.time / block).astype(np.int64) + n + shift) % KEPT == KEPT - 1
         for n, s in enumerate(segments)
     ]
-
-
-def _placed(instrument: Instrument, segment: Segment, recording: Recording) -> Segment:
-    """Return a segment with what the tip met, and the pose from which the motion began."""
-    names = segment.contacts
-    free = _posed(instrument, replace(segment, contacts=names[3:]))
-    nothing = _predicted(instrument, free)
-    without = _misfit(segment, nothing)
-    best, least, predicted = free, np.inf, nothing
-    for there in product((True, False), repeat=min(len(names), 3)):
-        kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
-        trial = _posed(instrument, replace(segment, contacts=kept)) if any(there) else free
-        rows = _predicted(instrument, trial) if any(there) else nothing
-        misfit = _misfit(segment, rows)
-        resized = min(_misfit(segment, nothing + size * (rows - nothing)) for size in SIZES)
-        if resized < RESIZED * without:
-            misfit = min(misfit, resized)
-        if misfit < 0.999 * least:
-            best, least, predicted = trial, misfit, rows
-    # a cell whose bias is in the file reads something where nothing was met
-    met, not_met = (_forces(_misfits(segment, rows)) for rows in (predicted, nothing))
-    if met > NO_WALL * not_met:
-        pushed = loaded(instrument, recording, segment)
-        if pushed is not None and pushed.measured:
-            pushed = _posed(instrument, pushed)
-            # the noise or the bias of a cell that touches nothing has no wall either
-            others = _misfits(pushed, _predicted(instrument, pushed))
-            before = sum(m for c, m in _misfits(segment, predicted).items() if c in others)
-            if sum(others.values()) < FELT * before:
-                return pushed
-    return best
-
-
-def _predicted(instrument: Instrument, segment: Segment) -> FloatArray:
-    """Return the channels of a segment as the instrument file has them."""
-    [predicted] = Rollouts(instrument, [segment]).predicted([[]])
-    return predicted
-
-
-def _forces(misfits: Mapping[str, float]) -> float:
-    """Return the part of the contact forces that is wrong, of the channel where it is most."""
-    return max((m for c, m in misfits.items() if c.startswith('load_cell/')), default=0.0)
-
-
-def _misfit(segment: Segment, predicted: FloatArray) -> float:
-    """
-    Return the parts that a prediction gets wrong of all that moves in channels, added up.
-
-    Zeros may be off: a bias or a gravity torque is nearly a wall that presses all the time.
-    """
-    found = 0.0
-    for measured, said, value in _compared(segment, predicted):
-        moves = np.var(value) + np.mean(measured.noise**2) + STILL**2 * np.mean(value**2)
-        off = min(np.var(said - value), _in_size(said, value))
-        found += float(off / (moves + 1e-30))
-    return found
-
-
-def _misfits(segment: Segment, predicted: FloatArray) -> dict[str, float]:
-    """Return the part of each channel's power that a prediction gets wrong."""
-    found = {}
-    for measured, said, value in _compared(segment, predicted):
-        off = min(float(np.mean((said - value) ** 2)), _in_size(said, value))
-        found[measured.sensor.channel] = off / (float(np.mean(value**2)) + 1e-30)
-    return found
-
-
-def _in_size(said: FloatArray, value: FloatArray) -> float:
-    """Return what is wrong without a sign: a sensor that loses it must not deny a wall."""
-    return float(np.mean((np.abs(said) - np.abs(value)) ** 2))
-
-
-def _compared(
-    segment: Segment, predicted: FloatArray
-) -> Iterator[tuple[Measured, FloatArray, FloatArray]]:
-    """Yield channels with what a prediction says and what they read, where they read anything."""
-    for row, measured in zip(predicted, segment.measured, strict=True):
-        known = np.isfinite(measured.value)
-        if known.sum() > 2:
-            yield measured, row[known], measured.value[known]
-
-
-def _posed(instrument: Instrument, segment: Segment) -> Segment:
-    """Return a segment with the pose in which the model rests before the motion begins."""
-    if set(segment.pushed) & set(instrument.driven):
-        return segment  # a known torque leads to no rest
-    first = segment.motion.value[:, 0]
-    resting = replace(
-        segment,
-        motion=Signals(
-            np.repeat(first[:, None], 200, axis=1),
-            np.zeros((len(first), 200)),
-            0.0,
-            0.01,
-        ),
-        time=0.01 * np.arange(200, dtype=np.float64),
-        period=0.01,
-        measured=(),
-        pose={},
-    )
-    inner = Rollouts(instrument, [resting]).rest()
-    return replace(segment, pose=inner)

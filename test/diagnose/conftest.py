@@ -123,3 +123,15 @@ def two_outcome(bench, two_run, quick):
 def sound_problem(bench, sound):
     """Return the problem of the bench with nothing wrong."""
     return prepared(sound, bench).problem
+
+
+@pytest.fixture(scope='module')
+def pressed(bench, measured_on):
+    """Return a recording with the tip against the wall."""
+    return measured_on(bench, trajectory='paper_fig12', settings=(), touching=True, name='contact')
+
+
+@pytest.fixture(scope='module')
+def free(bench, measured_on):
+    """Return a recording with the tip free, and a load cell that reads noise."""
+    return measured_on(bench)
