@@ -52,9 +52,9 @@ def placed(instrument: Instrument, segment: Segment, recording: Recording) -> Se
         trial = _posed(instrument, replace(segment, contacts=kept)) if any(there) else free
         rows = _predicted(instrument, trial) if any(there) else nothing
         misfit = _misfit(segment, rows)
-        resized = min(_misfit(segment, nothing + size * (rows - nothing)) for size in SIZES)
-        if resized < RESIZED * without:
-            misfit = min(misfit, resized)
+        if np.isfinite(misfit) and np.isfinite(without):
+            resized = min(_misfit(segment, nothing + size * (rows - nothing)) for size in SIZES)
+            misfit = min(misfit, resized) if resized < RESIZED * without else misfit
         if misfit < 0.999 * least:
             best, least, predicted = trial, misfit, rows
     # a cell whose bias is in the file reads something where nothing was met
@@ -87,7 +87,10 @@ def _misfit(segment: Segment, predicted: FloatArray) -> float:
     Return the parts that a prediction gets wrong of all that moves in channels, added up.
 
     Zeros may be off: a bias or a gravity torque is nearly a wall that presses all the time.
+    Infinite where the file's model diverges.
     """
+    if not np.isfinite(predicted).all():
+        return np.inf
     found = 0.0
     for measured, said, value in _compared(segment, predicted):
         moves = np.var(value) + np.mean(measured.noise**2) + STILL**2 * np.mean(value**2)
