@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 
 #: bins of what is fitted together: minutes of data are seen more coarsely; at most, where
 #: acceleration needs them
-ENOUGH, BINS = 8_000, 20_000
+ENOUGH, BINS = 8_000, 25_000
 USUAL_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 #: part of a motor's torque that acceleration within a bin may get wrong before bins are halved:
 #: more would show as a wrong inertia
@@ -42,8 +42,8 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     sampling = max(r[driving[0].sensor.channel].sampling for r in recordings)
     wished = max(USUAL_BIN, total / ENOUGH, sampling)
     samples = round(wished / sampling)
-    longest = max(recordings, key=lambda r: r.end - r.start)
-    motions = [m for d in driving if (m := Driven.of(longest, instrument, d)) is not None]
+    found = [Driven.of(r, instrument, d) for r in recordings for d in driving]
+    motions = [m for m in found if m is not None]
     while samples > 1 and total / (sampling * (samples // 2)) <= BINS:
         if all(m.missed(sampling * samples) <= MISSED for m in motions):
             break

@@ -37,6 +37,8 @@ def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
     """
     Return where a smooth motion cannot be told from rest: within a count, or where it turns.
 
+    What turns again and again by more than a count shakes, and rests nowhere.
+
     :param angle: on uniform bins, shape (bins,).
     :param error: standard deviation of a reading.
     :param period: of the bins [s].
@@ -46,7 +48,9 @@ def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
     travel = maximum_filter1d(angle, window) - minimum_filter1d(angle, window)
     rests: BoolArray = travel < max(np.sqrt(12.0) * error, 1e-12)
     step = np.diff(angle)
-    rests[1:-1] |= step[1:] * step[:-1] <= 0.0
+    turns = np.zeros(len(angle))
+    turns[1:-1] = step[1:] * step[:-1] <= 0.0
+    rests |= (turns > 0.0) & (np.convolve(turns, np.ones(window), mode='same') < 2.0)
     # what rests in the middle of a window rests in all of it; and a smooth motion knows neither
     # when rest began nor when it ended
     return maximum_filter1d(rests.astype(np.int8), window) > 0

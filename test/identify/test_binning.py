@@ -38,8 +38,9 @@ def test_fast_motion_has_short_bins(rig):
     assert bin_length([swinging(10.0)], rig) == pytest.approx(0.004)
 
 
-def test_the_slowest_motion_does_not_decide(rig):
-    both = [swinging(1.0), swinging(10.0, seconds=5.0)]
+@pytest.mark.parametrize('seconds', [3.0, 5.0])
+def test_the_slowest_motion_does_not_decide(rig, seconds):
+    both = [swinging(1.0), swinging(10.0, seconds)]
     assert bin_length(both, rig) == pytest.approx(0.004)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.identify.smoothing import at_rest, smoothed
 
 COUNT = 2.0 * np.pi / 28000
 TIME = 0.002 * np.arange(2000)
@@ -94,3 +94,12 @@ def test_a_sensor_without_counts_is_smoothed_by_its_noise():
     reading = truth + np.random.default_rng(2).normal(0.0, noise, len(TIME))
     found = smoothed(reading, np.ones(len(TIME), dtype=bool), noise, 0.0)
     assert np.std(found - truth) < 0.5 * noise
+
+
+@pytest.mark.parametrize(('frequency', 'rests'), [(1.0, True), (40.0, False)])
+def test_a_motor_that_shakes_rests_nowhere(frequency, rests):
+    time = np.arange(0.0, 2.0, 0.002)
+    angle = 0.01 * np.sin(2.0 * np.pi * frequency * time)
+    assert at_rest(angle, 1e-5, 0.002).any() == rests
+    # and a motor that flickers between two counts does not shake
+    assert at_rest(1e-3 * angle, 1e-5, 0.002).all()
