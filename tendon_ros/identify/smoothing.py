@@ -31,14 +31,14 @@ _SETTLES = 15  # solutions until what rests has found its place within the count
 _FARTHEST = 2.6
 _USUAL = 0.9  # deviations that the smoother leaves
 RESTING = 0.04  # [s] within which what moves has moved by a count
-SHAKES = 10.0  # counts that are travelled meanwhile by what turns more than once and does not rest
+SHAKES = 10.0  # counts from one turn to the next, no later than that, of what does not rest
 
 
 def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
     """
     Return where a smooth motion cannot be told from rest: within a count, or where it turns.
 
-    What turns again and again by many counts shakes, and rests nowhere.
+    What soon turns again, many counts away, shakes and does not rest.
 
     :param angle: on uniform bins, shape (bins,).
     :param error: standard deviation of a reading.
@@ -50,10 +50,12 @@ def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
     count = max(np.sqrt(12.0) * error, 1e-12)
     rests: BoolArray = travel < count
     step = np.diff(angle)
-    turns = np.zeros(len(angle))
-    turns[1:-1] = step[1:] * step[:-1] <= 0.0
-    again = np.convolve(turns, np.ones(window), mode='same') > 1.0
-    rests |= (turns > 0.0) & ~(again & (travel > SHAKES * count))
+    turns = 1 + np.flatnonzero(step[1:] * step[:-1] <= 0.0)
+    swings = (np.abs(np.diff(angle[turns])) > SHAKES * count) & (np.diff(turns) <= window)
+    shakes = np.zeros(len(turns), dtype=np.bool_)
+    shakes[1:] |= swings
+    shakes[:-1] |= swings
+    rests[turns[~shakes]] = True
     # what rests in the middle of a window rests in all of it; and a smooth motion knows neither
     # when rest began nor when it ended
     return maximum_filter1d(rests.astype(np.int8), window) > 0
