@@ -151,7 +151,7 @@ class Challenge:
                 for c in self._steps.candidates
                 if c.effect in sizes and c not in causes and of_one_body(instrument, cause, c)
             ]
-            if len(parts) < len(sizes):
+            if len(parts) != len(sizes):
                 continue
             model = state.model.without(causes.index(cause))
             for part in parts:

@@ -6,7 +6,7 @@ Walls belong to the surroundings, not to the instrument, and are found before an
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
@@ -43,19 +43,19 @@ def placed(instrument: Instrument, segment: Segment, recording: Recording) -> Se
     :return: the segment with the walls that were met, or with the load that was measured.
     """
     names = segment.contacts
-    free = _posed(instrument, replace(segment, contacts=names[3:]))
-    nothing = _predicted(instrument, free)
-    without = _misfit(segment, nothing)
-    best, least, predicted = free, np.inf, nothing
-    for there in product((True, False), repeat=min(len(names), 3)):
-        kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[3:]
-        trial = _posed(instrument, replace(segment, contacts=kept)) if any(there) else free
-        rows = _predicted(instrument, trial) if any(there) else nothing
+    nobody, *some = product((False, True), repeat=min(len(names), 3))
+    best = _meeting(instrument, segment, nobody)
+    predicted = nothing = _predicted(instrument, best)
+    least = without = _misfit(segment, nothing)
+    for there in some:
+        trial = _meeting(instrument, segment, there)
+        rows = _predicted(instrument, trial)
         misfit = _misfit(segment, rows)
         if np.isfinite(misfit) and np.isfinite(without):
             resized = min(_misfit(segment, nothing + size * (rows - nothing)) for size in SIZES)
             misfit = min(misfit, resized) if resized < RESIZED * without else misfit
-        if misfit < 0.999 * least:
+        # a wall that nothing came near is as good as none, and may be there
+        if 0.999 * misfit < least:
             best, least, predicted = trial, misfit, rows
     # a cell whose bias is in the file reads something where nothing was met
     met, not_met = (_forces(_misfits(segment, rows)) for rows in (predicted, nothing))
@@ -69,6 +69,13 @@ def placed(instrument: Instrument, segment: Segment, recording: Recording) -> Se
             if sum(others.values()) < FELT * before:
                 return pushed
     return best
+
+
+def _meeting(instrument: Instrument, segment: Segment, there: Sequence[bool]) -> Segment:
+    """Return a segment with some of its first walls, all others, and the pose at its start."""
+    names = segment.contacts
+    kept = tuple(n for n, t in zip(names, there, strict=False) if t) + names[len(there) :]
+    return _posed(instrument, replace(segment, contacts=kept))
 
 
 def _predicted(instrument: Instrument, segment: Segment) -> FloatArray:

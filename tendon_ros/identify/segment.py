@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import drives
@@ -224,8 +223,7 @@ def _motion(
     sampling = channel.sampling
     angle = motion_of(channel, sensor, start, sampling, round(bins * period / sampling) + 1)
     middles = period * (np.arange(bins) + 0.5)
-    # a straight line between readings would take an eighth off what shakes six readings long
-    found: FloatArray = CubicSpline(sampling * np.arange(len(angle)), angle)(middles)
+    found: FloatArray = np.interp(middles, sampling * np.arange(len(angle)), angle)
     return found
 
 
