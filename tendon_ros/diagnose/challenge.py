@@ -58,7 +58,11 @@ class Challenge:
         self._merge(found)
         self._divide(found)
         self._near = {}
+        # guesses creep along valleys, and rivals are fitted from here on: theirs is no merit
+        creeps = any(t.guessed for t in self._problem.tolerances)
         changed = bool(self._stood)
+        if creeps:
+            changed |= self._converged(found)
         replaced = 0
         stood = self._stood
         while waiting := [c for c in found.final.model.causes if c not in stood]:
@@ -83,6 +87,8 @@ class Challenge:
             }
             changed = True
             found.states[-1] = self._steps.pruned(found.start, better)
+            if creeps:
+                self._converged(found)
             # who stood only just did so beside the one that has gone
             stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
         changed |= self._converged(found)

@@ -16,6 +16,8 @@ from tendon_ros.identify.worths import worths
 
 #: part of what a cause explains that a rival which is close may leave
 LEAVES = 0.05
+#: of those that are worth least beside a rival, how many may have stood for it
+SUSPECTS = 2
 
 
 def halfway(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate]:
@@ -83,17 +85,21 @@ def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Riva
 
 def relieved(problem: Problem, fit: Fit) -> Fit | None:
     """
-    Return a rival's fit without what is worth least beside it.
+    Return a rival's fit without one of those that are worth least beside it.
 
     That may have stood for the rival, and keeps it in a valley from which it does not get out.
 
     :param problem: the data.
     :param fit: of a rival, which is its last cause.
-    :return: the fit with one cause less; None where the rival is alone or the rest diverges.
+    :return: the best fit with one cause less; None where the rival is alone or the rest diverges.
     """
     others = worths(problem, fit)[:-1]
-    if not others:
+    known = problem.slopes(fit)
+    # two that share what they do have each taken some of it, and it is not told who had less
+    rest = [fit.model.without(k) for k in np.argsort(others)[:SUSPECTS].tolist()]
+    fits = [problem.fitted(model, known, 8, 1e-3) for model in rest]
+    best = min(fits, key=lambda smaller: smaller.cost, default=None)
+    if best is None or not math.isfinite(best.cost):
         return None
-    rest = fit.model.without(int(np.argmin(others)))
-    smaller = problem.fitted(rest, problem.slopes(fit), 8, 1e-3)
-    return smaller if math.isfinite(smaller.cost) else None
+    # who takes over what has gone moves far: derivatives from before stall
+    return problem.fitted(best.model, rounds=8, accuracy=1e-3)

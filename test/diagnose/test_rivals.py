@@ -35,6 +35,23 @@ def test_what_is_worth_least_beside_a_rival_is_left_out_for_it(bench, measured_o
     assert relieved(problem, alone) is None
 
 
+def test_two_that_share_what_they_do_are_each_left_out_to_see(bench, measured_on):
+    there = {
+        Candidate('contact_stiffness', 'contact'): {'scale': 0.27},
+        Candidate('backlash', 'motor_M'): {'angle': 0.003, 'held': 0.0},
+    }
+    effects = [(c.effect, c.place, values) for c, values in there.items()]
+    problem = prepared([measured_on(bench, *effects, touching=True)], bench).problem
+    # a softer cable has taken half of what the contact yields, and first order holds it for more
+    cable = Candidate('cable_stiffness', 'cable_m1')
+    model = problem.empty.joined(cable, {'scale': 0.4})
+    for cause, values in there.items():
+        model = model.joined(cause, values | ({'scale': 0.43} if 'scale' in values else {}))
+    smaller = relieved(problem, problem.fitted(model, rounds=1))
+    assert smaller.model.causes == tuple(there)
+    assert smaller.model.values(0)['scale'] == pytest.approx(0.27, rel=0.01)
+
+
 def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
     problem = prepared([measured_on(bench)], bench).problem
     fit = problem.fitted(problem.empty, rounds=0)
