@@ -71,13 +71,11 @@ class Prepared:
         """
         Return whether a channel is much less noisy here.
 
-        Where channels weigh by what models leave of them, noise beneath that changes nothing.
-
         :param other: the same recordings.
         :return: whether what was taken for noise there was not.
         """
         return any(
-            np.median(b.doubt) > QUIETER * np.median(a.doubt)
+            np.median(b.noise) > QUIETER * np.median(a.noise)
             for mine, its in zip(
                 self.whole.rollouts.segments, other.whole.rollouts.segments, strict=True
             )

