@@ -19,7 +19,7 @@ from tendon_ros.identify.repetition import unrepeated
 from tendon_ros.identify.residuals import neighbours
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Measured, reading_error, Segment
-from tendon_ros.identify.smoothing import smoothed
+from tendon_ros.identify.smoothing import recounted, smoothed
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.signals import Signals
 
@@ -161,11 +161,9 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
     """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
 
     def again(motion: FloatArray, error: float, sampling: float) -> FloatArray:
-        count = error * np.sqrt(12.0)
         bins = segment.period * np.arange(len(motion))
         fine = np.interp(np.arange(0.0, len(motion) * segment.period, sampling), bins, motion)
-        counted = count * np.round(fine / count + 0.5) - 0.5 * count
-        angle = smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
+        angle = recounted(fine, error)
         found: FloatArray = np.interp(bins, sampling * np.arange(len(angle)), angle)
         return found
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ from scipy.interpolate import CubicSpline
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
 from tendon_ros.identify.segment import FITTED, motion_of, reading_error, SETTLING
+from tendon_ros.identify.smoothing import recounted
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 
@@ -21,9 +24,13 @@ FloatArray = NDArray[np.float64]
 #: acceleration needs them
 ENOUGH, BINS = 8_000, 25_000
 USUAL_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
-#: part of a motor's torque that acceleration within a bin may get wrong before bins are halved:
-#: more would show as a wrong inertia
-MISSED = 0.02
+#: part of a motor's torque that bins may get wrong of what its inertia makes before others are
+#: looked for: more would show as a wrong inertia
+WRONG = 0.02
+#: part of an acceleration's power that may be there where counts seem to make up all of it
+SOME = 0.25
+#: [s] that bins are lengthened to at most, and times as long as before with each step
+LONGEST, LONGER = 0.04, 1.25
 
 
 def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float:
@@ -33,7 +40,8 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     :param recordings: what was measured.
     :param instrument: the network.
     :return: [s], a few samples where sampling is fast, more than one where there is much data;
-        shorter where a drive accelerates so much within a bin that torque and encoder tell.
+        shorter where a drive accelerates so much within a bin that torque and encoder tell, longer
+        where its counts make up so much acceleration that inertia would seem less than it is.
     :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
     driving = drives(instrument)
@@ -41,13 +49,22 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     total = min(sum(lengths), max(FITTED, *lengths))
     sampling = max(r[driving[0].sensor.channel].sampling for r in recordings)
     wished = max(USUAL_BIN, total / ENOUGH, sampling)
-    samples = round(wished / sampling)
+    samples = usual = round(wished / sampling)
     found = [Driven.of(r, instrument, d) for r in recordings for d in driving]
     motions = [m for m in found if m is not None]
     while samples > 1 and total / (sampling * (samples // 2)) <= BINS:
-        if all(m.missed(sampling * samples) <= MISSED for m in motions):
+        if all(m.missed(sampling * samples) <= WRONG for m in motions):
             break
         samples //= 2
+    if samples < usual:
+        return sampling * samples
+    # what counts make up falls with the fourth power, what bins do not see grows with the second
+    while (longer := math.ceil(LONGER * samples)) * sampling <= LONGEST:
+        blurred = max((m.blurred(sampling * samples) for m in motions), default=0.0)
+        missed = max((m.missed(sampling * longer) for m in motions), default=0.0)
+        if blurred <= max(WRONG, missed):
+            break
+        samples = longer
     return sampling * samples
 
 
@@ -101,16 +118,41 @@ class Driven:
         Return the part of the torque that the inertia makes of what bins do not see.
 
         :param period: length of a bin [s].
-        :return: root mean square by root mean square; 0 where the encoder knows no better.
+        :return: root mean square by root mean square, what counts make up taken off.
         """
-        edges = np.arange(0.0, self.time[-1], period)
-        middles = edges[:-1] + 0.5 * period
-        coarse = CubicSpline(middles, self.angle(middles))
-        # the ends of a spline know little of what goes on there; how it all began counts nowhere
-        inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
-        if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= self.error:
-            return 0.0
-        mean: FloatArray = np.diff(self.angle(edges, 1)) / period
+        _, off = self._seen(period, self.angle)
+        _, made_up = self._seen(period, self._counted)
+        return self.inertia * math.sqrt(max(0.0, off - made_up)) / max(self.torque, 1e-12)
+
+    def blurred(self, period: float) -> float:
+        """
+        Return the part of the torque that the inertia seems to make less than it does.
+
+        A fit takes an acceleration that counts have made up for one that needed no torque.
+
+        :param period: length of a bin [s].
+        :return: root mean square by root mean square.
+        """
+        power, _ = self._seen(period, self.angle)
+        made_up, _ = self._seen(period, self._counted)
+        # how much is made up is known roughly: where it seems all, some may still be there
+        true = math.sqrt(max(power - made_up, SOME * power))
+        less = true * min(1.0, made_up / max(power, 1e-300))
+        return self.inertia * less / max(self.torque, 1e-12)
+
+    def _seen(self, period: float, motion: CubicSpline) -> tuple[float, float]:
+        """Return mean squares of acceleration by the bins, and of what it is off their means."""
+        middles = np.arange(0.0, self.time[-1] - period, period) + 0.5 * period
+        # splines know little of what goes on at their ends, and how it all began counts nowhere
         used = (middles > SETTLING) & (middles < middles[-2])
-        off = float(np.sqrt(np.mean((coarse(middles, 2) - mean)[used] ** 2)))
-        return self.inertia * off / max(self.torque, 1e-12)
+        found: FloatArray = CubicSpline(middles, motion(middles))(middles, 2)
+        speeds = motion(np.stack([middles - 0.5 * period, middles + 0.5 * period]), 1)
+        off = found - (speeds[1] - speeds[0]) / period
+        return float(np.mean(found[used] ** 2)), float(np.mean(off[used] ** 2))
+
+    @cached_property
+    def _counted(self) -> CubicSpline:
+        """What counts make of the angle."""
+        angle: FloatArray = self.angle(self.time)
+        made_up = recounted(angle, self.error) - angle if self.error > 0.0 else 0.0 * angle
+        return CubicSpline(self.time, made_up)

@@ -90,6 +90,19 @@ def smoothed(value: FloatArray, known: BoolArray, error: float, count: float) ->
         exponent = np.where(near, np.maximum(exponent - 1, _WEAKEST), exponent)
 
 
+def recounted(motion: FloatArray, error: float) -> FloatArray:
+    """
+    Return a smooth motion as it would be found had the counts lain half a count elsewhere.
+
+    :param motion: uniformly sampled, shape (n,).
+    :param error: standard deviation of a reading, above zero.
+    :return: shape (n,); what differs is what counts make of a motion.
+    """
+    count = error * np.sqrt(12.0)
+    counted = count * np.round(motion / count + 0.5) - 0.5 * count
+    return smoothed(counted, np.ones(len(counted), dtype=np.bool_), error, count)
+
+
 def _of_motion(value: FloatArray, weight: FloatArray, moving: BoolArray, error: float) -> int:
     """Return the largest exponent with which what moves stays as near as the sensor's error."""
     low, high, best = _WEAKEST, _STRONGEST, _WEAKEST

@@ -1,6 +1,7 @@
 """Bins are as long as they may be, and no longer than a drive's acceleration allows."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -22,12 +23,14 @@ def rig():
     return replace(body, pulleys=(pulley,), sensors=fine)
 
 
-def swinging(frequency, seconds=4.0):
+def swinging(frequency, seconds=4.0, count=0.0):
     """Return a recording of a body that swings, and nothing else."""
     time = np.arange(0.0, seconds, 1e-3)
     way = 2.0 * np.pi * frequency
     angle = 0.1 * np.sin(way * time)
     torque = -INERTIA * way**2 * angle
+    if count:
+        angle = count * np.round(angle / count)
     return Recording(
         'swinging', {ANGLE: Channel(ANGLE, time, angle), TORQUE: Channel(TORQUE, time, torque)}
     )
@@ -36,6 +39,26 @@ def swinging(frequency, seconds=4.0):
 def test_fast_motion_has_short_bins(rig):
     assert bin_length([swinging(1.0)], rig) == pytest.approx(0.008)
     assert bin_length([swinging(10.0)], rig) == pytest.approx(0.004)
+
+
+def test_coarse_counts_have_longer_bins_and_leave_inertia_as_it_is(rig):
+    count = 1e-3
+    coarse = tuple(replace(s, resolution=count * (s.kind == 'angle')) for s in rig.sensors)
+    guessed = {'pulley_body.inertia': math.inf}
+    body = replace(rig, sensors=coarse, tolerances=guessed)
+    run = swinging(1.0, 10.0, count)
+    assert 0.012 < bin_length([run], body) <= 0.04
+    problem = prepared([run], body).problem
+    fit = problem.fitted(problem.empty)
+    [inertia] = [
+        t.use(z).parameters[t.parameter]
+        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
+        if t.quantity == 'inertia'
+    ]
+    assert inertia == pytest.approx(1.0, abs=0.04)
+    # a torque against which inertia is small asks for no longer ones
+    loaded = run.with_channels([replace(run[TORQUE], value=run[TORQUE].value + 10.0)])
+    assert bin_length([loaded], body) == pytest.approx(0.008)
 
 
 @pytest.mark.parametrize('seconds', [3.0, 5.0])
