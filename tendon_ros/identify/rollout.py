@@ -6,7 +6,7 @@ The controller is taken out: each residual then belongs to one equation, and not
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -177,12 +177,22 @@ class Rollouts:
         """
         return [self._rolled(n, own)[0] for n, own in enumerate(uses)]
 
-    def _rolled(self, n: int, uses: Sequence[EffectUse]) -> tuple[Rows, Numbers]:
-        """Return what the model does along a segment, and its numbers with all effects."""
+    def _rolled(
+        self, n: int, uses: Sequence[EffectUse], late: float = 0.0, of: Sequence[str] = ()
+    ) -> tuple[Rows, Numbers]:
+        """
+        Return what the model does along a segment, and its numbers with all effects.
+
+        ``late``: how much later all of it happens [s], a part of a bin; ``of``: the sensors that
+        are late by so much less.
+        """
         segment = self.segments[n]
         base = self._base[n]
-        arrays = self._layout[n].arrays(in_force(base.effects, uses))
-        motion = true_motion(base, arrays.numbers, segment)
+        effects = in_force(base.effects, uses)
+        if of:
+            effects = tuple(_sooner(effects, late, of))
+        arrays = self._layout[n].arrays(effects)
+        motion = true_motion(base, arrays.numbers, segment, late)
         rows = follow(base, arrays, motion, len(segment.time) - 1, pose=segment.pose)
         return rows, arrays.numbers
 
@@ -191,14 +201,52 @@ class Rollouts:
         segment = self.segments[n]
         try:
             rows, numbers = self._rolled(n, uses)
+            found = self._told(n, rows, numbers)
+            for late, channels in self._between_bins(n, numbers).items():
+                names = [segment.measured[row].sensor.name for row in channels]
+                found[channels] = self._told(n, *self._rolled(n, uses, late, names))[channels]
         except (SimulationError, EffectError):
             return np.full((len(segment.measured), len(segment.time)), np.inf)
+        found.flags.writeable = False
+        return found
+
+    def _told(self, n: int, rows: Rows, numbers: Numbers) -> FloatArray:
+        """Return what a recording would have of what the model does."""
+        segment = self.segments[n]
         found = rows.reading[:, self._columns[n]].T
         found = as_held(rows, numbers, segment, found)
         reported = as_reported(rows.instrument, numbers, segment, found, self.usual)
-        found = _zeroed(segment, reported)
-        found.flags.writeable = False
+        return _zeroed(segment, reported)
+
+    def _between_bins(self, n: int, numbers: Numbers) -> dict[float, list[int]]:
+        """
+        Return which channels are late by more than whole bins, by how much more [s].
+
+        Read between two bins, a prediction would lose half of the noise that the motion's counts
+        make, and half a bin of delay would explain that in any recording. All that drives the
+        model is let happen later instead.
+        """
+        period = self.segments[n].period
+        found: dict[float, list[int]] = {}
+        for row, late in enumerate(numbers['sensor_delay'][self._columns[n]].tolist()):
+            part = late - period * round(late / period)
+            if part != 0.0:
+                found.setdefault(part, []).append(row)
         return found
+
+
+def _sooner(
+    effects: Sequence[EffectUse], time: float, names: Sequence[str]
+) -> Iterator[EffectUse]:
+    """Yield effects with the delays of some sensors shorter by a time [s], all of each as one."""
+    late = dict.fromkeys(names, -time)
+    for use in effects:
+        if use.effect == 'sensor_delay' and use.place in late:
+            late[use.place] += use.parameters['time']
+        else:
+            yield use
+    for name, rest in late.items():
+        yield EffectUse('sensor_delay', name, {'time': max(rest, 0.0)})
 
 
 def loosest(

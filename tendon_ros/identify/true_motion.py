@@ -15,13 +15,16 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 
 
-def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> Signals:
+def true_motion(
+    instrument: Instrument, numbers: Numbers, segment: Segment, late: float = 0.0
+) -> Signals:
     """
     Return what drove the rig, mended: motions seen, torques reported and loads measured.
 
     :param instrument: the network.
     :param numbers: after its effects.
     :param segment: what was measured.
+    :param late: how much later to let all of it happen [s], a part of a bin.
     :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.
     """
     motion = segment.motion
@@ -39,6 +42,9 @@ def true_motion(instrument: Instrument, numbers: Numbers, segment: Segment) -> S
         if not motors:
             q, lever = pressing(instrument, pulley)
             _mend(value[row], slope[row], numbers, q, motion.step, lever)
+    if late != 0.0:
+        for row in (*value, *slope):
+            row[:] = _earlier(row, -late / motion.step)
     return Signals(value, slope, 0.0, motion.step)
 
 

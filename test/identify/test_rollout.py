@@ -11,6 +11,7 @@ from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.laws import modified
+from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import follow
 
 INJECTED = {
@@ -183,6 +184,30 @@ def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     grid = segment.period * np.arange(len(plain))
     expected = np.interp(grid + late * segment.period, grid, segment.motion.value[0])
     assert plain[middle] == pytest.approx(expected[middle], abs=1e-3)
+
+
+@pytest.mark.parametrize('late', [0.5, 1.0, 2.3])
+def test_a_late_torque_sensor_takes_no_noise_away_either(stopping, measured_on, late):
+    body, problem_of = stopping
+    problem, _ = problem_of(measured_on(body))
+    [segment] = problem.rollouts.segments
+    noise = np.random.default_rng(3).normal(0.0, 1e-5, segment.motion.value.shape)
+    motion = segment.motion
+    noisy = replace(
+        segment, motion=Signals.smooth(motion.start, motion.step, motion.value + noise)
+    )
+    use = EffectUse('sensor_delay', 'torque_body', {'time': late * segment.period})
+    rows = [
+        problem.rollouts.like([which]).predicted([uses])[0][0]
+        for which in (segment, noisy)
+        for uses in ([], [use])
+    ]
+    middle = slice(50, -50)
+    now, delayed = (np.std((rows[k + 2] - rows[k])[middle]) for k in (0, 1))
+    assert delayed == pytest.approx(now, rel=0.05)
+    grid = segment.period * np.arange(len(rows[0]))
+    expected = np.interp(grid - late * segment.period, grid, rows[0])
+    assert np.std((rows[1] - expected)[middle]) < 0.4 * np.std((rows[1] - rows[0])[middle])
 
 
 def test_threads_change_no_derivative(bench, measured_on):
