@@ -19,6 +19,7 @@ from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 #: bins of what is fitted together: minutes of data are seen more coarsely; at most, where
 #: acceleration needs them
@@ -118,8 +119,14 @@ class Driven:
         Return the part of the torque that the inertia makes of what bins do not see.
 
         :param period: length of a bin [s].
-        :return: root mean square by root mean square, what counts make up taken off.
+        :return: root mean square by root mean square, what counts make up taken off; 0 where the
+            encoder knows no better.
         """
+        middles, _ = self._bins(period)
+        coarse = CubicSpline(middles, self.angle(middles))
+        inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
+        if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= self.error:
+            return 0.0
         _, off = self._seen(period, self.angle)
         _, made_up = self._seen(period, self._counted)
         return self.inertia * math.sqrt(max(0.0, off - made_up)) / max(self.torque, 1e-12)
@@ -142,13 +149,17 @@ class Driven:
 
     def _seen(self, period: float, motion: CubicSpline) -> tuple[float, float]:
         """Return mean squares of acceleration by the bins, and of what it is off their means."""
-        middles = np.arange(0.0, self.time[-1] - period, period) + 0.5 * period
-        # splines know little of what goes on at their ends, and how it all began counts nowhere
-        used = (middles > SETTLING) & (middles < middles[-2])
+        middles, used = self._bins(period)
         found: FloatArray = CubicSpline(middles, motion(middles))(middles, 2)
         speeds = motion(np.stack([middles - 0.5 * period, middles + 0.5 * period]), 1)
         off = found - (speeds[1] - speeds[0]) / period
         return float(np.mean(found[used] ** 2)), float(np.mean(off[used] ** 2))
+
+    def _bins(self, period: float) -> tuple[FloatArray, BoolArray]:
+        """Return the middles of bins, and which of them count."""
+        middles = np.arange(0.0, self.time[-1] - period, period) + 0.5 * period
+        # splines know little of what goes on at their ends, and how it all began counts nowhere
+        return middles, (middles > SETTLING) & (middles < middles[-2])
 
     @cached_property
     def _counted(self) -> CubicSpline:
