@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,8 @@ FloatArray = NDArray[np.float64]
 
 FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
 NEAR = 0.04  # [s] within which noise is a difference and motion is not
+#: bins, and [s] at most, beyond which accelerations that counts have made up share nothing
+COUNTED, LATER = 3, 0.06
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
 
@@ -263,7 +266,7 @@ def neighbours(period: float) -> int:
     :param period: length of a bin [s].
     :return: in bins.
     """
-    return max(1, round(NEAR / period))
+    return max(1, round(NEAR / period), min(COUNTED, math.ceil(LATER / period)))
 
 
 def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:
