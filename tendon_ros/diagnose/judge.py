@@ -166,6 +166,10 @@ def signs_beside(
 IDLE = 0.3
 
 
+#: part of what a cause gains per sample that is fitted which it may lose elsewhere
+NOTHING = 0.01
+
+
 def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     """
     Return whether what a fit does without makes worse what no fit has seen, by more than chance.
@@ -175,11 +179,15 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     :param ready: the problem.
     :param found: what the search has found.
     :param without: the fit without one cause, or without several.
-    :return: whether it loses more than seconds of no meaning would on average.
+    :return: whether it loses more than seconds of no meaning would on average, and more than
+        nothing beside what it gains where it was fitted.
     """
     gain = _foretold(ready, found, without)
+    # what was held out may be a hold, of which a damping says next to nothing
+    gained = (without.cost - found.final.cost) / max(len(found.final.left), 1)
+    nothing = NOTHING * max(0.0, gained) * sum(int(mask.sum()) for mask in ready.held.masks)
     # what cannot be computed there is no help either
-    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain))
+    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing
 
 
 def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:

@@ -49,6 +49,17 @@ def test_a_wrong_cause_spoils_what_was_not_fitted(ready):
     assert spoils(ready, found, found.without[1])
 
 
+@pytest.mark.parametrize(('part', 'spoilt'), [(1e-16, False), (1e-3, False), (0.5, True)])
+def test_what_was_held_out_and_says_nothing_spoils_nothing(ready, monkeypatch, part, spoilt):
+    found = found_with(ready.problem, FRICTION)
+    # a hold, of which damping says the last digits; half of what was gained is more than that
+    samples = sum(int(mask.sum()) for mask in ready.held.masks)
+    gained = (found.without[0].cost - found.final.cost) / len(found.final.left)
+    lost = np.full(8, -part * gained * samples / 8.0)
+    monkeypatch.setattr(judge, '_foretold', lambda *_: lost)
+    assert spoils(ready, found, found.without[0]) is spoilt
+
+
 @pytest.mark.parametrize(
     ('gained', 'spoilt'),
     [
@@ -61,7 +72,8 @@ def test_a_wrong_cause_spoils_what_was_not_fitted(ready):
 def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch, gained, spoilt):
     monkeypatch.setattr(judge, '_foretold', lambda *_: np.array(gained))
     found = found_with(ready.problem, FRICTION)
-    assert spoils(ready, found, found.without[0]) is spoilt
+    # beside a cause that gains nothing where it was fitted
+    assert spoils(ready, found, found.final) is spoilt
 
 
 @pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
