@@ -63,7 +63,7 @@ class Noise:
             for n, (m, row, c, a) in enumerate(
                 zip(segment.measured, rows, by_counts, apart, strict=True)
             ):
-                h = heard(m, row, segment.period)
+                h = heard(m, row, segment.period, counted=bool(segment.prescribed))
                 if n in resting:
                     c = _no_quieter(c, resting[n])
                 # what is heard and what counts make does not repeat itself either
@@ -110,16 +110,17 @@ def _no_quieter(counts: FloatArray, still: BoolArray) -> FloatArray:
     return np.where(still, np.maximum(counts, np.median(moving)), counts)
 
 
-def heard(measured: Measured, left: FloatArray, period: float) -> float:
+def heard(measured: Measured, left: FloatArray, period: float, *, counted: bool) -> float:
     """
     Return the noise of a channel that bins near each other do not share.
 
     :param measured: the channel.
     :param left: what a model leaves of it, shape (bins,), in its unit.
     :param period: of the bins [s].
+    :param counted: whether the motion was counted.
     :return: one deviation, in its unit.
     """
-    apart = neighbours(period)
+    apart = neighbours(period, counted=counted)
     # second differences: what a wrong model leaves of a motion is nearly straight for so long
     bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
     bend = bend[np.isfinite(bend)]

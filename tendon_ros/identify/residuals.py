@@ -236,13 +236,14 @@ class Residuals:
         """
         found: dict[str, tuple[float, int]] = {}
         for n, c, own in self.groups(left):
-            apart = neighbours(self._segments[n].period)
+            segment = self._segments[n]
+            apart = neighbours(segment.period, counted=bool(segment.prescribed))
             if len(own) <= apart:
                 continue
             step = own[apart:] - own[:-apart]
             noise = 0.5 * float(step @ step) * len(own) / len(step)
             # what keeps below noise that has a shape is no gap
-            measured = self._segments[n].measured[c]
+            measured = segment.measured[c]
             shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
             beyond = float(own @ own) - max(noise, FLOOR * shaped * len(own))
             power, count = found.get(measured.sensor.channel, (0.0, 0))
@@ -259,14 +260,16 @@ class Residuals:
         return [(n, c, vector[span]) for n, c, span in self.spans()]
 
 
-def neighbours(period: float) -> int:
+def neighbours(period: float, *, counted: bool) -> int:
     """
     Return how far bins are apart between which noise is a difference and motion is not.
 
     :param period: length of a bin [s].
+    :param counted: whether the motion was counted, so that acceleration is partly made up.
     :return: in bins.
     """
-    return max(1, round(NEAR / period), min(COUNTED, math.ceil(LATER / period)))
+    apart = max(1, round(NEAR / period))
+    return max(apart, min(COUNTED, math.ceil(LATER / period))) if counted else apart
 
 
 def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:
