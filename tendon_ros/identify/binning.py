@@ -28,6 +28,7 @@ USUAL_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument
 #: part of a motor's torque that bins may get wrong of what its inertia makes before others are
 #: looked for: more would show as a wrong inertia
 WRONG = 0.02
+FEW = 10  # bins of a recording that say nothing of their length
 #: part of an acceleration's power that may be there where counts seem to make up all of it
 SOME = 0.25
 #: [s] that bins are lengthened to at most, and times as long as before with each step
@@ -122,6 +123,8 @@ class Driven:
         :return: root mean square by root mean square, what counts make up taken off; 0 where the
             encoder knows no better.
         """
+        if self._too_short(period):
+            return 0.0
         middles, _ = self._bins(period)
         coarse = CubicSpline(middles, self.angle(middles))
         inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
@@ -140,12 +143,18 @@ class Driven:
         :param period: length of a bin [s].
         :return: root mean square by root mean square.
         """
+        if self._too_short(period):
+            return 0.0
         power, _ = self._seen(period, self.angle)
         made_up, _ = self._seen(period, self._counted)
         # how much is made up is known roughly: where it seems all, some may still be there
         true = math.sqrt(max(power - made_up, SOME * power))
         less = true * min(1.0, made_up / max(power, 1e-300))
         return self.inertia * less / max(self.torque, 1e-12)
+
+    def _too_short(self, period: float) -> bool:
+        """Return whether there are too few bins to say anything of their length."""
+        return bool(self.time[-1] < SETTLING + FEW * period)
 
     def _seen(self, period: float, motion: CubicSpline) -> tuple[float, float]:
         """Return mean squares of acceleration by the bins, and of what it is off their means."""

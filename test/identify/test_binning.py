@@ -67,6 +67,16 @@ def test_the_slowest_motion_does_not_decide(rig, seconds):
     assert bin_length(both, rig) == pytest.approx(0.004)
 
 
+def test_a_recording_of_few_bins_does_not_decide_either(rig):
+    time = np.arange(0.0, 900.0, 0.05)
+    angle = 0.1 * np.sin(time)
+    long = Recording(
+        'long',
+        {ANGLE: Channel(ANGLE, time, angle), TORQUE: Channel(TORQUE, time, -INERTIA * angle)},
+    )
+    assert bin_length([long, swinging(1.0, 0.6)], rig) == bin_length([long], rig) > 0.1
+
+
 def test_a_rotor_behind_its_gear_counts(rig):
     light = replace(rig, pulleys=(replace(rig.pulleys[0], inertia=1e-5),))
     [motor] = light.motors
