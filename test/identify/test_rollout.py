@@ -167,13 +167,19 @@ def test_a_limit_that_sets_in_over_a_knee_is_none_that_sets_in_at_once(bench, me
     assert misfit(problem) > misfit(problem, hard) > 2.0 * misfit(problem, soft)
 
 
+def noisy_motion(segment, size):
+    """Return a segment whose motion has errors that share nothing from bin to bin."""
+    motion = segment.motion
+    noise = np.random.default_rng(3).normal(0.0, size, motion.value.shape)
+    return replace(segment, motion=Signals.smooth(motion.start, motion.step, motion.value + noise))
+
+
 @pytest.mark.parametrize('late', [0.5, 1.0, 2.3])
 def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     body, problem_of = stopping
     problem, _ = problem_of(measured_on(body))
     [segment] = problem.rollouts.segments
-    noise = np.random.default_rng(3).normal(0.0, 1e-3, segment.motion.value.shape)
-    noisy = replace(segment, motion=replace(segment.motion, value=segment.motion.value + noise))
+    noisy = noisy_motion(segment, 1e-3)
     use = EffectUse('sensor_delay', 'encoder_body', {'time': late * segment.period})
     rig = replace(body, effects=(use,))
     moved, plain = (
@@ -191,11 +197,7 @@ def test_a_late_torque_sensor_takes_no_noise_away_either(stopping, measured_on, 
     body, problem_of = stopping
     problem, _ = problem_of(measured_on(body))
     [segment] = problem.rollouts.segments
-    noise = np.random.default_rng(3).normal(0.0, 1e-5, segment.motion.value.shape)
-    motion = segment.motion
-    noisy = replace(
-        segment, motion=Signals.smooth(motion.start, motion.step, motion.value + noise)
-    )
+    noisy = noisy_motion(segment, 1e-5)
     use = EffectUse('sensor_delay', 'torque_body', {'time': late * segment.period})
     rows = [
         problem.rollouts.like([which]).predicted([uses])[0][0]
