@@ -77,14 +77,18 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
 def _part_where_it_happens(
     problem: Problem, before: Fit, after: Fit, new: Set[Candidate]
 ) -> float:
-    """Return the part of what is left that events explain, in the recordings that have them."""
+    """
+    Return the part of what is left that events explain, in the recordings that have them.
+
+    Of both what bins share counts: pushes fit the moments at which friction lets go, one by one.
+    """
     segments = problem.rollouts.segments
     there = np.zeros(len(before.left), dtype=np.bool_)
     for n, _, span in problem.spans():
         there[span] = any(c.acts_in(segments[n].name) for c in new)
     then, last = (np.where(there, fit.left, 0.0) for fit in (before, after))
-    left = len(then) * problem.structured(then)
-    return float(then @ then - last @ last) / max(left, 1e-12)
+    left, stays = problem.structured(then), problem.structured(last)
+    return (left - stays) / max(left, 1e-12)
 
 
 def _completes(before: Fit, new: Set[Candidate]) -> bool:

@@ -228,3 +228,20 @@ def test_a_machine_leaves_more_than_laws_can_be_wrong_by(rubbing, left, beyond, 
     assert beyond_laws(rubbing, start, state) is beyond
     # of what was there little may be left for all that
     assert hopeless(rubbing, start, state) is lost
+
+
+@pytest.mark.parametrize(('together', 'told'), [(1, False), (40, True)])
+def test_an_event_does_not_live_on_what_single_bins_have(rubbing, together, told):
+    start = rubbing.fitted(rubbing.empty)
+    event = Candidate('disturbance', 'pulley_body')
+    push = {'torque': 0.05, 'start': 2.0, 'duration': 0.4}
+    quiet = np.random.default_rng(5).normal(size=len(start.left))
+    # as friction lets go here and there, or as somebody pushes; and a misfit all along beside it
+    all_along = quiet + 0.5 * np.sin(np.arange(len(quiet)) / 20.0)
+    left = all_along.copy()
+    for begin in range(100, 400, 300 if together > 1 else 12):
+        left[begin : begin + together] += 8.0
+    before = replace(start, left=left, cost=float(left @ left))
+    model = start.model.joined(event, push)
+    after = replace(start, model=model, left=all_along, cost=float(all_along @ all_along))
+    assert worthwhile(rubbing, before, before, after) is told
