@@ -164,8 +164,6 @@ def signs_beside(
 #: probability that a cause has at most which spoils what no fit saw, which others undo, or which
 #: may be what laws get wrong once
 IDLE = 0.3
-
-
 #: part of what a cause gains per sample that is fitted which it may lose elsewhere
 NOTHING = 0.01
 

@@ -59,11 +59,12 @@ class Noise:
         for segment, rows, by_counts, apart, resting in zip(
             segments, left, self.counts, unrepeated(segments, left), self.resting, strict=True
         ):
+            near = neighbours(segment.period, counted=bool(segment.prescribed))
             noise, shaped = [], []
             for n, (m, row, c, a) in enumerate(
                 zip(segment.measured, rows, by_counts, apart, strict=True)
             ):
-                h = heard(m, row, segment.period, counted=bool(segment.prescribed))
+                h = heard(m, row, near)
                 if n in resting:
                     c = _no_quieter(c, resting[n])
                 # what is heard and what counts make does not repeat itself either
@@ -110,17 +111,15 @@ def _no_quieter(counts: FloatArray, still: BoolArray) -> FloatArray:
     return np.where(still, np.maximum(counts, np.median(moving)), counts)
 
 
-def heard(measured: Measured, left: FloatArray, period: float, *, counted: bool) -> float:
+def heard(measured: Measured, left: FloatArray, apart: int) -> float:
     """
     Return the noise of a channel that bins near each other do not share.
 
     :param measured: the channel.
     :param left: what a model leaves of it, shape (bins,), in its unit.
-    :param period: of the bins [s].
-    :param counted: whether the motion was counted.
+    :param apart: how many bins apart noise is a difference and motion is not.
     :return: one deviation, in its unit.
     """
-    apart = neighbours(period, counted=counted)
     # second differences: what a wrong model leaves of a motion is nearly straight for so long
     bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
     bend = bend[np.isfinite(bend)]

@@ -33,6 +33,7 @@ ROUGH = 2e-5  # the same where nothing that is measured notices
 #: of the noise: what that may change of the file's model. Dry friction makes it some five times
 #: more, and derivatives are taken from changes of a tenth
 UNNOTICED = 3e-3
+WHOLE = 1e-6  # part of a bin that no delay is told by
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
 REMEMBERED = 3e7
@@ -188,10 +189,8 @@ class Rollouts:
         """
         segment = self.segments[n]
         base = self._base[n]
-        effects = in_force(base.effects, uses)
-        if of:
-            effects = tuple(_sooner(effects, late, of))
-        arrays = self._layout[n].arrays(effects)
+        effects = _sooner(in_force(base.effects, uses), late, of)
+        arrays = self._layout[n].arrays(tuple(effects))
         motion = true_motion(base, arrays.numbers, segment, late)
         rows = follow(base, arrays, motion, len(segment.time) - 1, pose=segment.pose)
         return rows, arrays.numbers
@@ -230,7 +229,8 @@ class Rollouts:
         found: dict[float, list[int]] = {}
         for row, late in enumerate(numbers['sensor_delay'][self._columns[n]].tolist()):
             part = late - period * round(late / period)
-            if part != 0.0:
+            # a whole number of bins is one to within its last digits
+            if abs(part) > WHOLE * period:
                 found.setdefault(part, []).append(row)
         return found
 
