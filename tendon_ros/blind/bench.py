@@ -1,14 +1,16 @@
 """
-The two benches: what their instrument files say, and the same as tables for the generator.
+The rigs: what their instrument files say, and the same as tables for the generator.
 
 ``bench`` is the installed ``bench_rig``. ``other`` differs in radii, coupling ratios, inertias,
-damping, cable curve, pretension and gains; its file is written beside the cases.
+damping, cable curve, pretension and gains; its file is written beside the cases. ``axis`` is one
+body on a motor and has no cable; its inertia and damping are guessed.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +22,7 @@ from tendon_ros.blind.rig import FloatArray, Rig
 from tendon_ros.model.instrument import Controller, Curve, Instrument
 from tendon_ros.model.instrument_file import load_instrument
 
-BENCHES = ('bench', 'other')
+BENCHES = ('bench', 'other', 'axis')
 PULLEYS = ('M', 'L', '1', '2', '3')
 LOOPS = ('m1', '12', 'L3')
 MOTORS = ('M', 'L')
@@ -36,7 +38,7 @@ def nominal(bench: str) -> Instrument:
     """
     Return what the user knows of a bench.
 
-    :param bench: ``bench`` or ``other``.
+    :param bench: ``bench``, ``other`` or ``axis``.
     :return: the instrument.
     :raises InstrumentError: for any other name.
     """
@@ -44,6 +46,8 @@ def nominal(bench: str) -> Instrument:
         return load_instrument('bench_rig')
     if bench == 'other':
         return _other(load_instrument('bench_rig'))
+    if bench == 'axis':
+        return _axis(load_instrument('bench_rig'))
     raise InstrumentError(f'{bench}: no such bench; there are {listed(BENCHES)}')
 
 
@@ -85,9 +89,42 @@ def _other(base: Instrument) -> Instrument:
     )
 
 
+def _axis(base: Instrument) -> Instrument:
+    """Return motor M alone, on a body that nobody has weighed."""
+    resolutions, noises = {'encoder_M': math.tau / 65536}, {'torque_M': 5e-3}
+    return replace(
+        base,
+        name='axis_rig',
+        description='one body on a motor, inertia and damping guessed',
+        pulleys=tuple(
+            replace(p, inertia=4e-3, damping=0.03) for p in base.pulleys if p.name == 'M'
+        ),
+        curves=(),
+        loops=(),
+        motors=tuple(
+            replace(
+                m,
+                controller=Controller(kp=6.0, ki=20.0, kd=0.08, limit=4.0),
+                position_limit=(-math.inf, math.inf),
+            )
+            for m in base.motors
+            if m.name == 'M'
+        ),
+        contacts=(),
+        sensors=tuple(
+            replace(s, resolution=resolutions.get(s.name, 0.0), noise=noises.get(s.name, 0.0))
+            for s in base.sensors
+            if s.name in resolutions | noises
+        ),
+        tolerances=dict.fromkeys(('pulley_M.inertia', 'pulley_M.damping'), math.inf),
+    )
+
+
 @cache
 def _table(bench: str) -> FloatArray:
     """Return the tension of one cable at multiples of :data:`SPACING`, by a spline of our own."""
+    if not nominal(bench).curves:
+        return np.zeros(2)
     [curve] = nominal(bench).curves
     spline = CubicSpline(curve.elongation, curve.tension, bc_type='natural')
     table: NDArray[np.float64] = spline(np.arange(0.0, curve.elongation[-1], SPACING))
@@ -103,35 +140,30 @@ def nominal_rig(bench: str) -> Rig:
     """
     one = nominal(bench)
     pulleys = np.zeros((5, k.PULLEY_COLUMNS))
-    bodies = {p.name: p for p in one.pulleys}
-    for p, name in enumerate(PULLEYS):
-        pulleys[p, k.INERTIA] = bodies[name].inertia
-        pulleys[p, k.DAMPING] = bodies[name].damping
-        pulleys[p, [k.STRIBECK_SPEED, k.NOTCH_WIDTH, k.WARMING_TIME, k.PUSH_LENGTH]] = 1.0
+    # what a rig has not stands still
+    pulleys[:, [k.INERTIA, k.DAMPING]] = 1.0
+    pulleys[:, [k.STRIBECK_SPEED, k.NOTCH_WIDTH, k.WARMING_TIME, k.PUSH_LENGTH]] = 1.0
+    for body in one.pulleys:
+        pulleys[PULLEYS.index(body.name), [k.INERTIA, k.DAMPING]] = body.inertia, body.damping
     loops = np.zeros((3, k.LOOP_COLUMNS))
+    loops[:, [k.STIFFNESS, k.FAST_TIME, k.SLOW_TIME, k.SLIP_LENGTH]] = 1.0
     routes = np.zeros((3, 5))
-    cables = {loop.name: loop for loop in one.loops}
-    for n, name in enumerate(LOOPS):
-        loops[n, k.STIFFNESS] = 1.0
-        loops[n, k.PRELOAD] = cables[name].pretension
-        loops[n, [k.FAST_TIME, k.SLOW_TIME, k.SLIP_LENGTH]] = 1.0
-        for p, pulley in enumerate(PULLEYS):
-            routes[n, p] = cables[name].route.get(pulley, 0.0)
+    for loop in one.loops:
+        n = LOOPS.index(loop.name)
+        loops[n, k.PRELOAD] = loop.pretension
+        for pulley, radius in loop.route.items():
+            routes[n, PULLEYS.index(pulley)] = radius
     motors = np.zeros((2, k.MOTOR_COLUMNS))
-    drives = {m.name: m for m in one.motors}
-    for n, name in enumerate(MOTORS):
-        gains = drives[name].controller
-        motors[n, [k.KP, k.KI, k.KD]] = gains.kp, gains.ki, gains.kd
-        motors[n, k.LIMIT] = gains.limit
-        motors[n, [k.GAIN, k.SCALE, k.DROP_LENGTH]] = 1.0
-        motors[n, k.SATURATION] = NO_LIMIT
-        motors[n, k.RESOLUTION] = resolution(one, f'encoder_{name}')
+    motors[:, [k.GAIN, k.SCALE, k.DROP_LENGTH, k.RESOLUTION]] = 1.0
+    motors[:, k.SATURATION] = NO_LIMIT
+    for motor in one.motors:
+        row, gains = motors[MOTORS.index(motor.name)], motor.controller
+        row[[k.KP, k.KI, k.KD, k.LIMIT]] = gains.kp, gains.ki, gains.kd, gains.limit
+        row[k.RESOLUTION] = resolution(one, f'encoder_{motor.name}')
     contact = np.zeros(k.CONTACT_NUMBERS)
-    [tip] = one.contacts
-    contact[k.CONTACT] = tip.stiffness
-    contact[k.CONTACT_DAMPING] = tip.damping
-    contact[k.WALL] = tip.position
-    contact[k.ARM] = tip.arm
+    for tip in one.contacts:
+        contact[[k.CONTACT, k.CONTACT_DAMPING]] = tip.stiffness, tip.damping
+        contact[[k.WALL, k.ARM]] = tip.position, tip.arm
     return Rig(
         routes, pulleys, loops, np.zeros((3, 5)), np.zeros((3, 5)), motors, contact, _table(bench)
     )

@@ -16,13 +16,14 @@ import numpy as np
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import Recording
 from tendon_ros.blind import columns as k
-from tendon_ros.blind.bench import nominal, nominal_rig
+from tendon_ros.blind.bench import nominal, nominal_rig, PULLEYS
 from tendon_ros.blind.faults import chosen, Fault, renewed, rig_with
 from tendon_ros.blind.gap import gap_of, Ran
 from tendon_ros.blind.laws import KIN
-from tendon_ros.blind.motion import KINDS, setpoints
+from tendon_ros.blind.motion import setpoints
 from tendon_ros.blind.rig import Rig, run
 from tendon_ros.blind.sensing import CHANNEL_SETS, clean, recorded
+from tendon_ros.blind.setup import Setup
 from tendon_ros.model.instrument import Instrument
 
 #: the strata in the order in which cases take them; single effects make half of all
@@ -35,6 +36,8 @@ PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
 _TRIES = 60
 _SAME = 6  # tries at one place
 _WHEEL = 0.03  # [m]: the motors' pulleys for which the motions are written
+#: what is guessed may be so many times as large or as small
+_GUESS = 2.0
 
 
 @dataclass(frozen=True)
@@ -42,9 +45,9 @@ class Settings:
     """
     What cases are like.
 
-    ``bench``: ``bench`` or ``other``; ``nuisance``: one standard deviation of the relative error
-    of every inertia, stiffness and preload, three times that for damping; ``strata``,
-    ``channels``: those to take in turn.
+    ``bench``: the rig, ``bench``, ``other`` or ``axis``; ``nuisance``: one standard deviation of
+    the relative error of every inertia, stiffness and preload, three times that for damping;
+    ``strata``, ``channels``: those to take in turn.
     """
 
     bench: str = 'bench'
@@ -78,13 +81,14 @@ def made(seed: int, index: int, settings: Settings | None = None) -> Case:
     stratum = settings.strata[index % len(settings.strata)]
     turn = index % len(settings.strata) + index // len(settings.strata)
     channels = settings.channels[turn % len(settings.channels)]
+    setup = Setup(settings.bench, channels)
     instrument = nominal(settings.bench)
     base = disturbed(nominal_rig(settings.bench), settings.nuisance, rng)
-    reach = _WHEEL / np.abs(base.routes).max(axis=0)[:2]
-    commands = {kind: setpoints(kind, reach, rng) for kind in KINDS}
-    faults, ran, gaps = _faulty(
-        base, stratum, channels, commands, instrument, settings.nuisance, rng
-    )
+    _misjudge(base, instrument, rng)
+    wheels = np.abs(base.routes).max(axis=0)[:2]
+    reach = np.divide(_WHEEL, wheels, out=np.ones(2), where=wheels > 0.0)
+    commands = {kind: setpoints(kind, reach, rng) for kind in setup.kinds}
+    faults, ran, gaps = _faulty(base, stratum, setup, commands, settings.nuisance, rng)
     recordings = {
         kind: recorded(kind, one.values, one.out, commands[kind], instrument, rng)
         for kind, one in ran.items()
@@ -136,48 +140,54 @@ def disturbed(rig: Rig, nuisance: float, rng: np.random.Generator) -> Rig:
     return one
 
 
+def _misjudge(rig: Rig, instrument: Instrument, rng: np.random.Generator) -> None:
+    """Let what the file guesses of bodies be something else."""
+    columns = {'inertia': k.INERTIA, 'damping': k.DAMPING}
+    for name, tolerance in instrument.tolerances.items():
+        if math.isinf(tolerance):
+            place, quantity = name.split('.')
+            row = PULLEYS.index(place.removeprefix('pulley_'))
+            rig.pulleys[row, columns[quantity]] *= _GUESS ** rng.uniform(-1.0, 1.0)
+
+
 def ran_all(
-    base: Rig, faults: tuple[Fault, ...], channels: str, commands: Mapping[str, Any]
+    base: Rig, faults: tuple[Fault, ...], setup: Setup, commands: Mapping[str, Any]
 ) -> dict[str, Ran]:
     """
     Return the three runs of a rig with faults.
 
     :param base: the rig without them.
     :param faults: what is wrong.
-    :param channels: which sensors there are.
+    :param setup: which rig, and which of its sensors there are.
     :param commands: set-points by kind.
     :return: runs by kind.
     """
     result = {}
-    for kind in KINDS:
+    for kind in setup.kinds:
         rig = rig_with(base, faults, kind)
-        closed = kind != 'free'
+        closed = setup.closed(kind)
         out = run(rig, commands[kind], closed=closed)
-        result[kind] = Ran(rig, out, clean(rig, out, channels, closed=closed), closed)
+        result[kind] = Ran(rig, out, clean(rig, out, setup.channels, closed=closed), closed)
     return result
 
 
 def _faulty(
     base: Rig,
     stratum: str,
-    channels: str,
+    setup: Setup,
     commands: Mapping[str, Any],
-    instrument: Instrument,
     nuisance: float,
     rng: np.random.Generator,
 ) -> tuple[tuple[Fault, ...], dict[str, Ran], list[float]]:
     """Draw faults until each one's gap is in the window of its stratum."""
     if stratum == 'none':
-        return (), ran_all(base, (), channels, commands), []
+        return (), ran_all(base, (), setup, commands), []
     low, high = WEAK if stratum == 'weak' else PLAIN
-    faults = chosen(stratum, channels, rng)
+    faults = chosen(stratum, setup, rng)
     for attempt in range(1, _TRIES):
         try:
-            ran = ran_all(base, faults, channels, commands)
-            gaps = [
-                gap_of(base, faults, n, ran, commands, channels, instrument)
-                for n in range(len(faults))
-            ]
+            ran = ran_all(base, faults, setup, commands)
+            gaps = [gap_of(base, faults, n, ran, commands, setup) for n in range(len(faults))]
         except SimulationError:
             gaps = [math.inf] * len(faults)
         if all(low <= gap <= high for gap in gaps):
@@ -191,7 +201,7 @@ def _faulty(
             if late or fault.out_of_bounds(nuisance):
                 # the same effect elsewhere at first, so that subtle ones have their chance too
                 keep = attempt < _SAME
-                faults = renewed(faults, n, channels, rng, keep=keep)
+                faults = renewed(faults, n, setup, rng, keep=keep)
     raise SimulationError(
         f'blind case: no fault of stratum {stratum} found within {_TRIES} draws; take another seed'
     )

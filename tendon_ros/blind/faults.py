@@ -10,10 +10,9 @@ import numpy as np
 
 from tendon_ros.blind.bench import LOOPS, MOTORS, PULLEYS
 from tendon_ros.blind.law import Law, Values
-from tendon_ros.blind.laws import KIN, LAWS
-from tendon_ros.blind.motion import KINDS
+from tendon_ros.blind.laws import KIN
 from tendon_ros.blind.rig import Rig
-from tendon_ros.blind.unknowns import UNKNOWNS
+from tendon_ros.blind.setup import Setup
 
 #: names of what stands at an index, by the first word of a place
 _NAMES: dict[str, Sequence[str]] = {
@@ -33,7 +32,7 @@ class Fault:
     place: str
     size: float
     seed: int
-    recordings: tuple[str, ...] = KINDS
+    recordings: tuple[str, ...]
 
     @property
     def effect(self) -> str:
@@ -78,22 +77,22 @@ def rig_with(base: Rig, faults: Sequence[Fault], kind: str) -> Rig:
     return rig
 
 
-def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault, ...]:
+def chosen(stratum: str, setup: Setup, rng: np.random.Generator) -> tuple[Fault, ...]:
     """
     Draw faults for a stratum: effect first, then place, each with the same chance.
 
     :param stratum: one that has faults.
-    :param channels: which sensors there are.
+    :param setup: which rig, and which of its sensors there are.
     :param rng: draws.
     :return: one to three faults that are not at one place the special case of each other; of a
         mixed case the last is one that no catalogue has.
     """
     count = int(rng.integers(2, 4)) if stratum in ('two_three', 'mixed') else 1
-    laws = [UNKNOWNS if stratum == 'unknown' else LAWS] * count
+    laws = [setup.unknowns if stratum == 'unknown' else setup.laws] * count
     if stratum == 'mixed':
-        laws[-1] = UNKNOWNS
+        laws[-1] = setup.unknowns
     while True:
-        faults = [_any(own, channels, rng) for own in laws]
+        faults = [_any(own, setup, rng) for own in laws]
         if not any(_same(a, b) for n, a in enumerate(faults) for b in faults[:n]):
             return tuple(faults)
 
@@ -101,7 +100,7 @@ def chosen(stratum: str, channels: str, rng: np.random.Generator) -> tuple[Fault
 def renewed(
     faults: Sequence[Fault],
     which: int,
-    channels: str,
+    setup: Setup,
     rng: np.random.Generator,
     *,
     keep: bool,
@@ -111,41 +110,36 @@ def renewed(
 
     :param faults: all of them.
     :param which: the index of the one.
-    :param channels: which sensors there are.
+    :param setup: which rig, and which of its sensors there are.
     :param rng: draws.
     :param keep: whether its effect stays, at another place and size.
     :return: the faults with a new one in its place.
     """
     others = [fault for n, fault in enumerate(faults) if n != which]
-    laws = UNKNOWNS if faults[which].law in UNKNOWNS else LAWS
+    laws = setup.unknowns if faults[which].law in setup.unknowns else setup.laws
     while True:
         if keep:
-            one = _drawn(faults[which].effect, laws, channels, rng)
+            one = _drawn(faults[which].effect, laws, setup, rng)
         else:
-            one = _any(laws, channels, rng)
+            one = _any(laws, setup, rng)
         if not any(_same(one, other) for other in others):
             return (*faults[:which], one, *faults[which + 1 :])
         keep = False
 
 
-def _any(laws: Sequence[Law], channels: str, rng: np.random.Generator) -> Fault:
+def _any(laws: Sequence[Law], setup: Setup, rng: np.random.Generator) -> Fault:
     """Draw any fault of some laws."""
-    effects = sorted({law.effect for law in laws if seen_places(law, channels)})
-    return _drawn(str(rng.choice(effects)), laws, channels, rng)
+    effects = sorted({law.effect for law in laws if setup.places(law)})
+    return _drawn(str(rng.choice(effects)), laws, setup, rng)
 
 
-def _drawn(effect: str, laws: Sequence[Law], channels: str, rng: np.random.Generator) -> Fault:
+def _drawn(effect: str, laws: Sequence[Law], setup: Setup, rng: np.random.Generator) -> Fault:
     """Draw place, size and recordings of an effect."""
-    pairs = [
-        (law, place)
-        for law in laws
-        if law.effect == effect
-        for place in seen_places(law, channels)
-    ]
+    pairs = [(law, place) for law in laws if law.effect == effect for place in setup.places(law)]
     law, place = pairs[int(rng.integers(len(pairs)))]
     size = math.exp(rng.uniform(math.log(law.low), math.log(law.high)))
     once = law.event and rng.random() < 0.6
-    kinds = (str(rng.choice(KINDS)),) if once else KINDS
+    kinds = (str(rng.choice(setup.kinds)),) if once else setup.kinds
     return Fault(law, place, size, int(rng.integers(2**31)), kinds)
 
 
@@ -153,11 +147,3 @@ def _same(one: Fault, other: Fault) -> bool:
     """Return whether two faults at one place are a matter of words."""
     kin = (one.effect, *KIN.get(one.effect, ()))
     return one.place == other.place and other.effect in kin
-
-
-def seen_places(law: Law, channels: str) -> tuple[str, ...]:
-    """Return the places of a law without those at sensors that are not there."""
-    missing = set() if channels == 'joint' else {'encoder_1', 'encoder_2', 'encoder_3'}
-    if channels == 'motor':
-        missing.add('load_cell')
-    return tuple(place for place in law.places if place not in missing)

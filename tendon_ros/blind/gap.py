@@ -14,10 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tendon_ros.blind import columns as k
+from tendon_ros.blind.bench import nominal
 from tendon_ros.blind.faults import Fault, rig_with
 from tendon_ros.blind.rig import FloatArray, Rig, run, TICK
 from tendon_ros.blind.sensing import clean, floors
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.blind.setup import Setup
+
+#: ticks at the end of a run in which what late readings say of the motion is not known any more
+_END = 50
 
 
 @dataclass(frozen=True)
@@ -36,8 +40,7 @@ def gap_of(
     which: int,
     ran: Mapping[str, Ran],
     commands: Mapping[str, FloatArray],
-    channels: str,
-    instrument: Instrument,
+    setup: Setup,
 ) -> float:
     """
     Return the gap of one fault: the largest of its channels', RMS over all recordings.
@@ -47,8 +50,7 @@ def gap_of(
     :param which: the index of the one.
     :param ran: the runs with all of them.
     :param commands: set-points by kind.
-    :param channels: which sensors there are.
-    :param instrument: gives the noise floors.
+    :param setup: which rig, and which of its sensors there are.
     :return: in noise floors.
     """
     others = [fault for n, fault in enumerate(faults) if n != which]
@@ -58,12 +60,12 @@ def gap_of(
         rig = rig_with(base, others, kind)
         drive = drive_of(rig, one.out)
         out = run(rig, commands[kind], closed=one.closed, drive=drive)
-        for name, value in clean(rig, out, channels, closed=one.closed).items():
-            difference = one.values[name] - value
+        for name, value in clean(rig, out, setup.channels, closed=one.closed).items():
+            difference = (one.values[name] - value)[:-_END]
             squares[name] = squares.get(name, 0.0) + float(difference @ difference)
             counts[name] = counts.get(name, 0) + difference.size
-    floor = floors(instrument, channels)
-    return max(float(np.sqrt(squares[n] / counts[n])) / floor[n] for n in squares)
+    floor = floors(nominal(setup.bench), setup.channels)
+    return max(float(np.sqrt(squares[n] / counts[n])) / floor[n] for n in floor)
 
 
 def drive_of(rig: Rig, out: FloatArray) -> FloatArray:

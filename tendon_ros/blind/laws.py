@@ -58,6 +58,26 @@ LAWS: tuple[Law, ...] = (
     Law('disturbance', _ALL, 0.08, 1.2, pulley.disturbance, event=True),
 )
 
+_M, _MOTOR_M = ('pulley_M',), ('motor_M',)
+
+#: the same of one body on a motor: inertia and damping are guessed there, and no faults; another
+#: torque constant is the same as more of both
+AXIS_LAWS: tuple[Law, ...] = (
+    Law('coulomb_friction', _M, 0.02, 0.5, pulley.coulomb),
+    Law('stribeck_friction', _M, 0.04, 0.4, pulley.stribeck),
+    Law('presliding_friction', _M, 0.04, 0.5, pulley.presliding),
+    Law('asymmetric_friction', _M, 0.03, 0.4, pulley.asymmetric),
+    Law('gravity', _M, 0.04, 0.6, pulley.gravity),
+    Law('joint_spring', _M, 0.05, 1.0, pulley.spring),
+    Law('torque_bias', _MOTOR_M, 0.03, 0.3, drive.torque_bias),
+    Law('torque_ripple', _MOTOR_M, 0.03, 0.3, drive.ripple),
+    Law('torque_saturation', _MOTOR_M, 2.0, 12.0, drive.saturation),
+    Law('sensor_delay', at('encoder', 'M'), 1e-3, 1.2e-2, drive.encoder_delay),
+    Law('sensor_delay', at('torque', 'M'), 4e-3, 4.5e-2, drive.torque_delay),
+    Law('sensor_rectified', at('torque', 'M'), 0.99, 1.01, drive.rectified),
+    Law('disturbance', _M, 0.08, 1.2, pulley.disturbance, event=True),
+)
+
 _DRY = ('coulomb_friction', 'stribeck_friction', 'presliding_friction', 'asymmetric_friction')
 _CONSTANT = ('torque_bias', 'gravity', 'joint_spring', 'disturbance')
 _SHIFT = ('encoder_offset', 'contact_position', 'cable_slip')

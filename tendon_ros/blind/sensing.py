@@ -109,13 +109,16 @@ def recorded(
     stamps = np.arange(len(out[rows]), dtype=np.int64) * round(EVERY * TICK * 1e9)
     time = stamps / 1e9
     channels = []
+    present = {sensor.name for sensor in instrument.sensors}
     for n, m in enumerate(MOTORS):
+        if f'encoder_{m}' not in present:
+            continue
         step = resolution(instrument, f'encoder_{m}')
         reading = np.round(out[rows, k.READING + n] / step) * step
         channels.append(Channel(f'actuator/pulley_{m}/position', time, reading))
         channels.append(Channel(f'setpoint/pulley_{m}/position', time, setpoint[rows, n]))
     for sensor in (*TORQUES, CELL, *ANGLES):
-        if sensor.channel not in values:
+        if sensor.channel not in values or sensor.name not in present:
             continue
         value = values[sensor.channel][::EVERY]
         if sensor in ANGLES:
@@ -150,7 +153,12 @@ def floors(instrument: Instrument, channels: str) -> dict[str, float]:
     :param channels: ``motor``, ``force`` or ``joint``.
     :return: by channel.
     """
-    result = {s.channel: noise(instrument, s.name) * np.hypot(1.0, _COLOURED) for s in TORQUES}
+    present = {sensor.name for sensor in instrument.sensors}
+    result = {
+        s.channel: noise(instrument, s.name) * np.hypot(1.0, _COLOURED)
+        for s in TORQUES
+        if s.name in present
+    }
     if channels in {'force', 'joint'}:
         result[CELL.channel] = noise(instrument, CELL.name)
     if channels == 'joint':

@@ -1,7 +1,7 @@
 """
 A benchmark on disk: cases as bags, and their labels apart.
 
-``cases/case_0000/{contact,free,mixed}`` are bags, ``instrument.yaml`` is what a user knows,
+The folders in ``cases/case_0000`` are bags, ``instrument.yaml`` is what a user knows,
 ``withhold.json`` says which effects a run has to do without, ``labels/case_0000.json`` is read by
 the scorer only. What a folder was made of stands in ``made.json``.
 """
@@ -22,7 +22,6 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Recording
 from tendon_ros.blind.bench import nominal
 from tendon_ros.blind.case import Case, made, Settings
-from tendon_ros.blind.motion import KINDS
 from tendon_ros.model.instrument_file import save_instrument
 
 #: seeds from here on are for scores that are published; below, for development
@@ -125,9 +124,10 @@ def read_case(folder: Path, case: str) -> list[Recording]:
 
     :param folder: of the benchmark.
     :param case: its name.
-    :return: in the order contact, free, mixed.
+    :return: in the order of their names.
     """
-    return [replace(read_recording(folder / 'cases' / case / kind), name=kind) for kind in KINDS]
+    bags = sorted(path for path in (folder / 'cases' / case).iterdir() if path.is_dir())
+    return [replace(read_recording(bag), name=bag.name) for bag in bags]
 
 
 def read_json(path: Path) -> Any:

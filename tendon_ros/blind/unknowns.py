@@ -119,3 +119,17 @@ UNKNOWNS: tuple[Law, ...] = (
     Law('unknown_pad', ('contact',), 3e-5, 5e-4, _pad),
     Law('unknown_cable_damping', at('cable', 'm1 12 L3'), 60.0, 2000.0, _cable_damping),
 )
+
+_M, _MOTOR_M = ('pulley_M',), ('motor_M',)
+
+#: the same of one body on a motor
+AXIS_UNKNOWNS: tuple[Law, ...] = (
+    Law('unknown_cubic_spring', _M, 0.05, 2.0, _cubic),
+    Law('unknown_drag', _M, 5e-3, 0.1, _drag),
+    Law('unknown_stop', _M, 0.1, 2.0, _stop),
+    Law('unknown_warming', _M, 1.0, 10.0, _warming),
+    Law('unknown_sided_friction', _M, 0.04, 0.6, _sided),
+    Law('unknown_torque_lag', _MOTOR_M, 5e-3, 5e-2, _lag),
+    Law('unknown_torque_drop', _MOTOR_M, 0.1, 0.8, _drop, event=True),
+    Law('unknown_encoder_ripple', at('encoder', 'M'), 4e-4, 5e-3, _cyclic),
+)

@@ -19,9 +19,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument('--out', type=Path, required=True, metavar='DIR')
     make.add_argument('--seed', type=int, required=True, help='below 1000: for development')
     make.add_argument('--cases', type=int, required=True, metavar='K')
-    make.add_argument('--bench', choices=('bench', 'other'), default='bench')
+    make.add_argument('--bench', choices=('bench', 'other', 'axis'), default='bench')
     make.add_argument('--strata', nargs='+', metavar='NAME', help='to take in turn')
-    make.add_argument('--channels', nargs='+', metavar='SET', help='motor, force, joint')
+    make.add_argument(
+        '--channels', nargs='+', metavar='SET', help='motor, force, joint; of an axis motor'
+    )
     make.add_argument('--nuisance', type=float, default=0.01, help='one sigma, relative')
     make.add_argument('--jobs', type=int, default=1, help='processes')
     run_ = tasks.add_parser('run', help='diagnose every case, without its label')
@@ -86,15 +88,15 @@ def _check(name: str, value: float, least: float) -> None:
 def _make(args: argparse.Namespace) -> None:
     from tendon_ros.base.errors import listed, RecordingError
     from tendon_ros.blind.case import Settings, STRATA
-    from tendon_ros.blind.sensing import CHANNEL_SETS
+    from tendon_ros.blind.setup import channel_sets
     from tendon_ros.blind.store import make, seed_kind
     from tendon_ros.cli.progress import shown
 
-    plain = Settings()
-    strata, channels = args.strata or plain.strata, args.channels or plain.channels
+    sets = channel_sets(args.bench)
+    strata, channels = args.strata or Settings().strata, args.channels or sets
     for name, given, known in (
         ('--strata', strata, STRATA),
-        ('--channels', channels, CHANNEL_SETS),
+        ('--channels', channels, sets),
     ):
         for one in given:
             if one not in known:

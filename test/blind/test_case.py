@@ -50,6 +50,26 @@ def test_channels_that_are_not_there_are_absent(channels, case):
     assert 'load_cell/force' not in one.recordings['free']
 
 
+def test_an_axis_has_motor_signals_alone():
+    one = made(7, 1, Settings(bench='axis', channels=('motor',)))
+    assert one.label['stratum'] == 'none'
+    assert list(one.recordings) == ['fast', 'slow', 'steps']
+    for recording in one.recordings.values():
+        assert {name.split('/')[0] for name in recording.channels} == {'actuator', 'setpoint'}
+        assert {name.split('/')[1] for name in recording.channels} == {'pulley_M'}
+
+
+def test_the_body_of_an_axis_is_not_as_guessed(monkeypatch):
+    def torque():
+        one = made(7, 1, Settings(bench='axis', channels=('motor',)))
+        return one.recordings['fast']['actuator/pulley_M/effort'].value
+
+    other = torque()
+    monkeypatch.setattr('tendon_ros.blind.case._GUESS', 1.0)
+    guessed = torque()
+    assert np.std(other - guessed) > 0.1 * np.std(guessed)
+
+
 def test_channel_sets_and_strata_meet():
     places = len(PATTERN)
     settings = Settings()

@@ -5,14 +5,16 @@ import pytest
 
 from tendon_ros.blind import columns as k
 from tendon_ros.blind.bench import nominal, nominal_rig, PULLEYS
+from tendon_ros.blind.case import PLAIN, ran_all
 from tendon_ros.blind.faults import Fault, rig_with
-from tendon_ros.blind.gap import drive_of
+from tendon_ros.blind.gap import drive_of, gap_of
 from tendon_ros.blind.law import Law
-from tendon_ros.blind.laws import KIN, LAWS
-from tendon_ros.blind.motion import KINDS, LENGTHS, setpoints
+from tendon_ros.blind.laws import AXIS_LAWS, KIN, LAWS
+from tendon_ros.blind.motion import AXIS_KINDS, KINDS, LENGTHS, setpoints
 from tendon_ros.blind.rig import BEFORE, run
 from tendon_ros.blind.sensing import clean, floors
-from tendon_ros.blind.unknowns import UNKNOWNS
+from tendon_ros.blind.setup import Setup
+from tendon_ros.blind.unknowns import AXIS_UNKNOWNS, UNKNOWNS
 from tendon_ros.effects import catalogue
 from tendon_ros.model import engine
 from tendon_ros.model.simulation import Simulation
@@ -48,10 +50,39 @@ def test_a_rig_without_faults_is_the_model(bench):
     assert np.abs(difference).max() < 3e-4
 
 
+def test_an_axis_without_faults_is_the_model():
+    setpoint = setpoints('fast', np.ones(2), np.random.default_rng(1))[:6000]
+    out = run(nominal_rig('axis'), setpoint, closed=False)
+    rows = Simulation(nominal('axis'), pose={'M': 0.0}).run(setpoint[:, :1], 1)
+    assert np.ptp(out[:, k.ANGLE]) > 0.5
+    assert np.abs(rows.angle[1000:, 0] - out[1000:, k.ANGLE]).max() < 3e-3
+
+
+@pytest.mark.parametrize(
+    ('law', 'place'),
+    [(law, place) for law in (*AXIS_LAWS, *AXIS_UNKNOWNS) for place in law.places],
+    ids=lambda value: value.effect if isinstance(value, Law) else value,
+)
+def test_every_fault_of_an_axis_makes_a_gap(law, place):
+    faults = (Fault(law, place, law.high, 5, AXIS_KINDS),)
+    assert axis_gap(faults) > PLAIN[0]
+
+
+def test_an_axis_without_faults_has_no_gap():
+    assert axis_gap(()) < 0.8
+
+
+def axis_gap(faults):
+    """Return what the first fault, or nothing, explains of three recordings of an axis."""
+    setup, base, rng = Setup('axis', 'motor'), nominal_rig('axis'), np.random.default_rng(1)
+    commands = {kind: setpoints(kind, np.ones(2), rng) for kind in AXIS_KINDS}
+    return gap_of(base, faults, 0, ran_all(base, faults, setup, commands), commands, setup)
+
+
 def test_compiled_and_plain_are_the_same(monkeypatch):
     rig = nominal_rig('bench')
     fault = Fault(
-        next(law for law in LAWS if law.effect == 'stribeck_friction'), 'pulley_1', 0.1, 1
+        next(law for law in LAWS if law.effect == 'stribeck_friction'), 'pulley_1', 0.1, 1, KINDS
     )
     rig = rig_with(rig, [fault], 'contact')
     setpoint = command('mixed')[1000:1040]
@@ -80,7 +111,7 @@ def test_every_effect_of_the_catalogue_is_drawn_in_its_words():
     assert {law.effect for law in LAWS} == set(catalogue())
     for law in LAWS:
         for place in law.places:
-            values = Fault(law, place, law.low, 3).values(nominal_rig('bench'))
+            values = Fault(law, place, law.low, 3, KINDS).values(nominal_rig('bench'))
             known = {p.name: p for p in catalogue()[law.effect].parameters}
             for key, value in values.items():
                 assert known[key].low <= value <= known[key].high, (law.effect, key)
@@ -116,7 +147,7 @@ def test_every_fault_is_felt_at_its_place(law, place, ran):
 
 def test_dry_friction_is_as_large_as_it_says():
     law = law_of('coulomb_friction')
-    rig = rig_with(nominal_rig('bench'), [Fault(law, 'pulley_M', 0.2, 1)], 'free')
+    rig = rig_with(nominal_rig('bench'), [Fault(law, 'pulley_M', 0.2, 1, KINDS)], 'free')
     ticks = np.arange(2001) * 1e-3
     angle = 0.05 * ticks  # the motor turns evenly, the tip is free
     drive = np.zeros((2001, 4))
@@ -130,7 +161,7 @@ def test_dry_friction_is_as_large_as_it_says():
 
 def test_a_cable_relaxes_by_its_fraction():
     law = law_of('cable_creep')
-    rig = rig_with(nominal_rig('bench'), [Fault(law, 'cable_L3', 0.3, 1)], 'free')
+    rig = rig_with(nominal_rig('bench'), [Fault(law, 'cable_L3', 0.3, 1, KINDS)], 'free')
     rig.loops[2, [k.FAST_TIME, k.SLOW_TIME]] = 0.05, 0.1
     rig.pulleys[4, k.INERTIA] = 1e6  # as good as held
     drive = np.zeros((2001, 4))
