@@ -82,7 +82,8 @@ class Effect:
     ``stateful``: the law has an auxiliary state. ``dissipative``: it never gives power.
     ``form``: how far the law may be from that of a machine which does have the effect, as a part
     of what the effect does: geometry and scales are exact, friction is not, creep least of all.
-    ``by_load``: what it does grows with what other effects do to its place.
+    ``by_others``: what it does grows with what other effects do to its place: a late sensor shows
+    where what it reads jumps.
     ``other(**parameters)``: the name and parameters of a simpler effect that these make it, if
     any. ``holds``: simpler effects that are part of this one, each with the parameters of this
     one that grow by all of the simpler one's only parameter when both are at one place.
@@ -97,7 +98,7 @@ class Effect:
     law: Callable[..., tuple[float, ...]] | None = None
     stateful: bool = False
     form: float = 0.01
-    by_load: bool = False
+    by_others: bool = False
     other: Callable[..., tuple[str, dict[str, float]] | None] | None = None
     holds: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     alike: Callable[..., Mapping[str, float]] | None = None

@@ -18,6 +18,7 @@ from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.diagnose.signless import may_be_signless
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
@@ -97,7 +98,7 @@ class Search:
         self._steps.candidates = tuple(
             c
             for c in self._steps.candidates
-            if c.instants or c.switches or find(c.effect).by_load or (c.effect, c.place) in traced
+            if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
         )
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)
@@ -121,15 +122,16 @@ class Search:
                 if state is not found.start:
                     screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
-                grown = self._of_many(found) if turn == 0 else None
-                if grown is not None and outweighed(self.problem, found.start, grown):
-                    found.unweighed = grown
-                    return found
-                if grown is None:
+                many = self._of_many(found) if turn == 0 else None
+                if many is None:
                     grown = self._grown(found, state, screen, proposals)
                     if turn == 0 and astray(self.problem, found.start, grown):
-                        others = self._from_the_file(found), self._without_sign(found)
-                        grown = better(self.problem, grown, *others)
+                        grown = better(self.problem, grown, self._from_the_file(found))
+                if turn == 0:
+                    grown = better(self.problem, many, grown, self._without_sign(found))
+                if grown is many and many and outweighed(self.problem, found.start, many):
+                    found.unweighed = many
+                    return found
                 turn += 1
             if grown is not None:
                 state = grown
@@ -155,12 +157,16 @@ class Search:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
         for candidate in self._steps.candidates:
-            if candidate.switches:
+            if may_be_signless(self.problem, candidate):
                 there = {p.name: p.typical for p in candidate.parameters}
-                fit = self._steps.from_afar(found.start.model.joined(candidate, there))
-                if fit is not None and self._believed(found, found.start, fit):
-                    fits.append(fit)
-        return better(self.problem, *fits)
+                alone = self.problem.empty.joined(candidate, there)
+                fits += [
+                    self._steps.from_afar(found.start.model.joined(candidate, there)),
+                    self._of_many(found, alone),
+                    self._from_the_file(found, alone),
+                ]
+        believed = [fit for fit in fits if fit and self._believed(found, found.start, fit)]
+        return better(self.problem, *believed)
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""
@@ -173,9 +179,9 @@ class Search:
             self.problem, found.start, found.final
         )
 
-    def _from_the_file(self, found: Found) -> Fit | None:
+    def _from_the_file(self, found: Found, known: Model | None = None) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
-        file = self.problem.fitted(self.problem.empty, rounds=0)
+        file = self.problem.fitted(known or self.problem.empty, rounds=0)
         # where nothing has moved far, signatures are what they are beside the tolerances fitted
         seen = None if far_off(self.problem, found.start) else self._seen
         screen = Screen(self.problem, file, seen)

@@ -28,6 +28,8 @@ TAKES = 0.65
 HOPELESS, MOST_LEFT = 10.0, 0.15
 #: the same, for a machine of which guesses are found: there challenges only polish
 MACHINE = 3.0
+#: times the noise's power that noise never has, shared by neighbours or not
+LOUD = 2.0
 #: part of what is left in one channel that it must explain else
 HALF = 0.5
 #: part of the samples that tells anything of a cause which shows there alone
@@ -169,12 +171,16 @@ def open_question(problem: Problem, state: Fit) -> bool:
     """
     Return whether what is left has any structure that a further cause could explain.
 
+    What is late, say, shows for some hundredths of a second at reversals, and neighbours share
+    nothing of it: so much power that it cannot be noise is a question, too.
+
     :param problem: the data.
     :param state: what holds already.
     :return: whether, over all samples or in one channel.
     """
     whole, in_one = problem.structures(state.left)
-    return whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
+    loud = float(np.mean(state.left**2)) > LOUD
+    return loud or whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
 
 
 def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
@@ -214,7 +220,8 @@ def outweighed(problem: Problem, start: Fit, state: Fit) -> bool:
     :param state: with all that was found.
     :return: whether they should weigh by what stays of them.
     """
-    if problem.by_misfit or problem.structured(state.left) < 1.0:
+    alone = len(problem.channels()) < 2
+    if alone or problem.by_misfit or problem.structured(state.left) < 1.0:
         return False
     return beyond_laws(problem, start, state)
 

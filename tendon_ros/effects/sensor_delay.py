@@ -36,6 +36,7 @@ EFFECT = Effect(
             typical=0.003,
         ),
     ),
+    by_others=True,
     modify=modify,
     sensors=SENSED,
 )

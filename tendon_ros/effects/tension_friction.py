@@ -57,5 +57,5 @@ EFFECT = Effect(
     law=tension_friction_law,
     dissipative=True,
     form=0.06,
-    by_load=True,
+    by_others=True,
 )
