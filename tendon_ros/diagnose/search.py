@@ -98,7 +98,10 @@ class Search:
         self._steps.candidates = tuple(
             c
             for c in self._steps.candidates
-            if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
+            if c.instants
+            or c.switches
+            or find(c.effect).by_others
+            or (c.effect, c.place) in traced
         )
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)
