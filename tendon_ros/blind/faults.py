@@ -10,7 +10,7 @@ import numpy as np
 
 from tendon_ros.blind.bench import LOOPS, MOTORS, PULLEYS
 from tendon_ros.blind.law import Law, Values
-from tendon_ros.blind.laws import KIN
+from tendon_ros.blind.laws import KIN, MERGING
 from tendon_ros.blind.rig import Rig
 from tendon_ros.blind.setup import Setup
 
@@ -144,6 +144,9 @@ def _drawn(effect: str, laws: Sequence[Law], setup: Setup, rng: np.random.Genera
 
 
 def _same(one: Fault, other: Fault) -> bool:
-    """Return whether two faults at one place are a matter of words."""
+    """Return whether two faults at one place, or on one body, are a matter of words."""
     kin = (one.effect, *KIN.get(one.effect, ()))
-    return one.place == other.place and other.effect in kin
+    if one.place == other.place and other.effect in kin:
+        return True
+    bodies = {fault.place.partition('_')[2] for fault in (one, other)}
+    return len(bodies) == 1 and {one.effect, other.effect} in MERGING

@@ -9,6 +9,9 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.blind import columns as k
 from tendon_ros.blind.bench import nominal_rig
 from tendon_ros.blind.case import disturbed, made, PATTERN, PLAIN, Settings, WEAK
+from tendon_ros.blind.faults import chosen
+from tendon_ros.blind.laws import MERGING
+from tendon_ros.blind.setup import Setup
 from tendon_ros.blind.store import make, read_case, read_json, seed_kind
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -68,6 +71,13 @@ def test_the_body_of_an_axis_is_not_as_guessed(monkeypatch):
     monkeypatch.setattr('tendon_ros.blind.case._GUESS', 1.0)
     guessed = torque()
     assert np.std(other - guessed) > 0.1 * np.std(guessed)
+
+
+def test_what_is_one_on_one_body_is_not_drawn_together():
+    setup, rng = Setup('axis', 'motor'), np.random.default_rng(0)
+    drawn = [{f.effect for f in chosen('two_three', setup, rng)} for _ in range(300)]
+    assert any('torque_bias' in effects for effects in drawn)
+    assert not any(pair <= effects for effects in drawn for pair in MERGING)
 
 
 def test_channel_sets_and_strata_meet():
