@@ -84,8 +84,8 @@ _SHIFT = ('encoder_offset', 'contact_position', 'cable_slip')
 _SOFT = ('pretension', 'cable_stiffness')
 _SCALE = ('encoder_gain', 'eccentricity')
 
-#: effects that are one on one body: a constant torque moves the rest of a spring, and makes friction
-#: differ by direction
+#: effects that are one on one body: a constant torque moves the rest of a spring, and makes
+#: friction differ by direction
 MERGING = ({'torque_bias', 'joint_spring'}, {'torque_bias', 'asymmetric_friction'})
 
 #: effects of a catalogue that hold each other as a special case: one is taken out with the others,
