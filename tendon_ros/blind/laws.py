@@ -71,7 +71,7 @@ AXIS_LAWS: tuple[Law, ...] = (
     Law('joint_spring', _M, 0.05, 1.0, pulley.spring),
     Law('torque_bias', _MOTOR_M, 0.03, 0.3, drive.torque_bias),
     Law('torque_ripple', _MOTOR_M, 0.03, 0.3, drive.ripple),
-    Law('torque_saturation', _MOTOR_M, 2.0, 12.0, drive.saturation),
+    Law('torque_saturation', _MOTOR_M, 1.5, 6.0, drive.saturation),
     Law('sensor_delay', at('encoder', 'M'), 1e-3, 1.2e-2, drive.encoder_delay),
     Law('sensor_delay', at('torque', 'M'), 4e-3, 4.5e-2, drive.torque_delay),
     Law('sensor_rectified', at('torque', 'M'), 0.99, 1.01, drive.rectified),

@@ -93,16 +93,7 @@ class Search:
         screen = Screen(self.problem, state, self._seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
-        # what leaves no trace at a typical size is not asked again, but where others may make one
-        traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
-        self._steps.candidates = tuple(
-            c
-            for c in self._steps.candidates
-            if c.instants
-            or c.switches
-            or find(c.effect).by_others
-            or (c.effect, c.place) in traced
-        )
+        self._steps.candidates = asked_again(self._steps.candidates, proposals)
         for model in (self._memory.models() if self._memory else [])[1:]:
             state = self._steps.settled(model)
             found.states.append(state)
@@ -305,6 +296,24 @@ class Search:
             if np.isfinite(fit.cost):
                 states.append(fit)
         found.states = [*states, final] if order else states
+
+
+def asked_again(
+    candidates: Sequence[Candidate], proposals: Sequence[Proposal]
+) -> tuple[Candidate, ...]:
+    """
+    Return whom to ask again once something has been found.
+
+    :param candidates: all that may be named.
+    :param proposals: of them beside nothing.
+    :return: those that left a trace at a typical size, or may once others act.
+    """
+    traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
+    return tuple(
+        c
+        for c in candidates
+        if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
+    )
 
 
 def _promising(state: Fit, proposals: Sequence[Proposal]) -> list[Proposal]:

@@ -1,10 +1,14 @@
 """A search that begins with what an earlier one found goes on from there."""
 
+from dataclasses import replace
+
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.search import asked_again, Search, TRACE
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.screening import Screen
+from tendon_ros.model.instrument_file import load_instrument
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 GAIN = Candidate('torque_gain', 'motor_L')
@@ -71,3 +75,17 @@ def test_the_same_effect_elsewhere_is_no_worse_than_where_the_cause_would_lead(b
         fit = problem.fitted(problem.empty.joined(other, values), rounds=20)
         # in time bins make the misfit a staircase, on which fits end a hundredth apart
         assert rivals[other].cost <= 1.02 * fit.cost
+
+
+def test_a_late_sensor_is_asked_again_once_others_make_it_jump(measured_on):
+    axis = load_instrument('driven_axis')
+    run = measured_on(axis, settings=(('duration', '6 s'), ('amplitude', '40 deg')))
+    problem = prepared([run], axis).problem
+    late, heavy = Candidate('sensor_delay', 'torque_axis'), Candidate('inertia', 'pulley_axis')
+    screen = Screen(problem, problem.fitted(problem.empty), {})
+    # beside guesses of inertia and damping alone, late is another inertia
+    silent = [replace(p, own=0.0) for c in (late, heavy) for p in screen.proposals(c)]
+    assert len(silent) > 1
+    assert asked_again([late, heavy], silent) == (late,)
+    heard = [replace(p, own=1.1 * TRACE) for p in silent]
+    assert asked_again([late, heavy], heard) == (late, heavy)

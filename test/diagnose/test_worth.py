@@ -13,6 +13,7 @@ from tendon_ros.diagnose.worth import (
     gains,
     hopeless,
     moving,
+    open_question,
     stands_out,
     worthwhile,
 )
@@ -228,6 +229,14 @@ def test_a_machine_leaves_more_than_laws_can_be_wrong_by(rubbing, left, beyond, 
     assert beyond_laws(rubbing, start, state) is beyond
     # of what was there little may be left for all that
     assert hopeless(rubbing, start, state) is lost
+
+
+@pytest.mark.parametrize(('loud', 'told'), [(0.9, False), (2.0, True)])
+def test_what_neighbours_do_not_share_is_a_question_where_it_is_no_noise(rubbing, loud, told):
+    state = rubbing.fitted(rubbing.empty, rounds=0)
+    # so many bins apart that noise is a difference the sign is another
+    left = loud * (-1.0) ** np.arange(len(state.left))
+    assert open_question(rubbing, replace(state, left=left)) is told
 
 
 @pytest.mark.parametrize(('together', 'told'), [(1, False), (40, True)])

@@ -1,0 +1,58 @@
+"""A torque that lost its sign, on a body of which nothing is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.signless import may_be_signless
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.model.instrument_file import load_instrument
+
+EFFORT = 'actuator/pulley_axis/effort'
+SIGN = Candidate('sensor_rectified', 'torque_axis')
+SPRING = ('joint_spring', 'pulley_axis', {'stiffness': 0.5, 'rest': -0.1})
+LOST = ('sensor_rectified', 'torque_axis', {'rectified': 1.0})
+
+
+@pytest.fixture(scope='module')
+def axis():
+    return load_instrument('driven_axis')
+
+
+@pytest.fixture(scope='module')
+def recorded(axis, measured_on):
+    """Return what records an axis of twice the inertia, with effects."""
+    heavy = replace(axis, pulleys=tuple(replace(p, inertia=2.0 * p.inertia) for p in axis.pulleys))
+    settings = (('duration', '8 s'), ('amplitude', '40 deg'))
+    return lambda *effects: measured_on(heavy, *effects, settings=settings)
+
+
+@pytest.mark.parametrize(('effects', 'told'), [((SPRING,), False), ((SPRING, LOST), True)])
+def test_what_reads_below_zero_has_its_sign(axis, recorded, effects, told):
+    problem = prepared([recorded(*effects)], axis).problem
+    assert may_be_signless(problem, SIGN) is told
+    assert not may_be_signless(problem, Candidate('joint_spring', 'pulley_axis'))
+
+
+def test_noise_about_zero_is_no_sign(axis, recorded):
+    run = recorded(SPRING, LOST)
+    effort = run[EFFORT]
+    noisy = effort.value + 4e-3 * np.random.default_rng(2).standard_normal(effort.value.size)
+    assert noisy.min() < 0.0
+    problem = prepared([run.with_channels([Channel(EFFORT, effort.time, noisy)])], axis).problem
+    assert may_be_signless(problem, SIGN)
+
+
+def test_a_lost_sign_is_found_beside_a_spring(axis, recorded):
+    run = recorded(SPRING, LOST)
+    problem = prepared([run], axis).problem
+    found = Search(problem, everyone(axis, sorted(run.channels)), 1).run()
+    causes = found.final.model.causes
+    assert {(c.effect, c.place) for c in causes} == {LOST[:2], SPRING[:2]}
+    spring = found.final.model.values(next(k for k, c in enumerate(causes) if c != SIGN))
+    # the torque constant is a guess, so that sizes are not told; the angle at rest is
+    assert spring['rest'] == pytest.approx(-0.1, abs=0.01)
