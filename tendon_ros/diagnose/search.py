@@ -12,13 +12,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tendon_ros.diagnose.asking import asked_again, may_be_signless
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.signless import may_be_signless
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
@@ -30,7 +30,6 @@ from tendon_ros.diagnose.worth import (
     stands_out,
     worthwhile,
 )
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -43,8 +42,6 @@ AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitate
 ROUNDS = 6  # of looking for more causes
 #: part of the cost that a challenge has to leave for another look where much is left
 GAINED = 0.8
-#: norm of a signature in noise deviations, imitations taken off, that leaves a trace
-TRACE = 2.0
 
 
 class Search:
@@ -296,24 +293,6 @@ class Search:
             if np.isfinite(fit.cost):
                 states.append(fit)
         found.states = [*states, final] if order else states
-
-
-def asked_again(
-    candidates: Sequence[Candidate], proposals: Sequence[Proposal]
-) -> tuple[Candidate, ...]:
-    """
-    Return whom to ask again once something has been found.
-
-    :param candidates: all that may be named.
-    :param proposals: of them beside nothing.
-    :return: those that left a trace at a typical size, or may once others act.
-    """
-    traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
-    return tuple(
-        c
-        for c in candidates
-        if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
-    )
 
 
 def _promising(state: Fit, proposals: Sequence[Proposal]) -> list[Proposal]:

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from tendon_ros.diagnose.asking import asked_again, TRACE
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.search import asked_again, Search, TRACE
+from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.screening import Screen
 from tendon_ros.model.instrument_file import load_instrument

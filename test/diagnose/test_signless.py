@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.asking import may_be_signless
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
-from tendon_ros.diagnose.signless import may_be_signless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.model.instrument_file import load_instrument
 

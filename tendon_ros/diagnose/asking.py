@@ -1,13 +1,37 @@
-"""Sensors that may have lost their sign: what they read is never below zero."""
+"""Whom a search has to ask: who left a trace, or may once others act; whose sign may be lost."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.screening import Proposal
 
+#: norm of a signature in noise deviations, imitations taken off, that leaves a trace
+TRACE = 2.0
 BELOW = 0.05  # part of the range of a reading that noise may make negative
+
+
+def asked_again(
+    candidates: Sequence[Candidate], proposals: Sequence[Proposal]
+) -> tuple[Candidate, ...]:
+    """
+    Return whom to ask again once something has been found.
+
+    :param candidates: all that may be named.
+    :param proposals: of them beside nothing.
+    :return: those that left a trace at a typical size, or may once others act.
+    """
+    traced = {(p.candidate.effect, p.candidate.place) for p in proposals if p.own > TRACE}
+    return tuple(
+        c
+        for c in candidates
+        if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
+    )
 
 
 def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
