@@ -34,18 +34,22 @@ class Early:
     late: frozenset[int]
 
 
-def least_late(problem: Problem, model: Model) -> int | None:
+def told_apart(problem: Problem, model: Model) -> Model | None:
     """
-    Return the smallest delay where every sensor has one: what all share is the clock's.
+    Return a model without what all sensors are late by, where every one is: it is the clock's.
 
     :param problem: the data.
     :param model: causes.
-    :return: which cause; None where some sensor is on time.
+    :return: without the smallest delay, the others less by it; None where some sensor is on time.
     """
     late = _late(model)
     if not _kinds(problem).keys() <= {model.causes[k].place for k in late}:
         return None
-    return min(late, key=lambda k: late[k])
+    shared = min(late, key=lambda k: late[k])
+    apart = model.without(*late)
+    for k in late.keys() - {shared}:
+        apart = apart.joined(model.causes[k], {'time': late[k] - late[shared]})
+    return apart
 
 
 def early(problem: Problem, model: Model) -> Early | None:

@@ -40,7 +40,8 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST, MANY = 10, 5
 AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
-#: part of the cost that a challenge has to leave for another look where much is left
+#: part of the cost that a challenge may leave for another look where much is left, and the same
+#: causes for it to be another state
 GAINED = 0.8
 
 
@@ -243,9 +244,15 @@ class Search:
         return fit if self._believed(found, before, fit) else None
 
     def _believed(self, found: Found, before: Fit, fit: Fit) -> bool:
-        """Return whether a state has causes that the one before has not, and needs them."""
+        """
+        Return whether a state has causes that the one before has not, and needs them.
+
+        Or the same ones leave much less: what came and went has led out of a valley.
+        """
         new = set(fit.model.causes) - set(before.model.causes)
-        if not new or not worthwhile(self.problem, found.start, before, fit):
+        if not new:
+            return bool(fit.model.causes) and fit.cost < GAINED * before.cost
+        if not worthwhile(self.problem, found.start, before, fit):
             return False
         few = len(fit.model.causes) <= MANY
         return few or stands_out(self.problem, found.start, before, fit)

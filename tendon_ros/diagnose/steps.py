@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import at_once, degenerate, excuses
-from tendon_ros.diagnose.clock import least_late
+from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.worth import needed, worthwhile
@@ -204,9 +204,9 @@ class Steps:
         model = self.parted(state)
         if model is not state.model:
             state = self.settled(model, self.problem.slopes(state))
-        shared = least_late(self.problem, state.model)
-        if shared is not None:
-            state = self.settled(state.model.without(shared))
+        apart = told_apart(self.problem, state.model)
+        if apart is not None:
+            state = self.settled(apart)
         checked: set[Candidate] = set()
         rough = False
         while True:

@@ -9,6 +9,9 @@ import numpy as np
 
 from tendon_ros.identify.fit import Fit, Problem
 
+#: part of its size that is added to each unknown's: two may do the very same
+SAME = 1e-10
+
 
 def worths(problem: Problem, fit: Fit) -> list[float]:
     """
@@ -36,6 +39,9 @@ def growth(problem: Problem, fit: Fit) -> Callable[[Sequence[int]], float]:
         return lambda _which: math.inf
     slope = fit.slope * problem.free(fit)
     products = slope.T @ slope + np.diag(problem.prior(fit.model) + 1e-9)
+    # of size one, so that two that do the very same can still be solved for
+    size = np.sqrt(np.diag(products))
+    products = products / np.outer(size, size) + SAME * np.eye(len(size))
     x = problem.pack(fit.model)
     begins = np.cumsum([0, *(len(c.parameters) for c in fit.model.causes)]).tolist()
 
@@ -48,7 +54,7 @@ def growth(problem: Problem, fit: Fit) -> Callable[[Sequence[int]], float]:
         stays = np.setdiff1d(np.arange(len(x)), theirs)
         step = -x[gone]
         # what stays makes up for it as far as it can
-        across = products[np.ix_(stays, gone)] @ step
+        across = products[np.ix_(stays, gone)] @ (size[gone] * step)
         made_up = np.linalg.solve(products[np.ix_(stays, stays)], across)
         here = slope[:, gone] @ step
         grown = float(here @ here) + 2.0 * float(here @ fit.left)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tendon_ros.diagnose.clock import early, early_words, least_late
+from tendon_ros.diagnose.clock import early, early_words, told_apart
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -13,9 +13,11 @@ def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
     run = measured_on(body, settings=(('duration', '4 s'), ('amplitude', '30 deg')))
     problem = prepared([run], body).problem
     one = problem.empty.joined(Candidate('sensor_delay', 'encoder_body'), {'time': 0.012})
-    assert least_late(problem, one) is None
-    both = one.joined(Candidate('sensor_delay', 'torque_body'), {'time': 0.011})
-    assert least_late(problem, both) == 1
+    assert told_apart(problem, one) is None
+    both = one.joined(Candidate('sensor_delay', 'torque_body'), {'time': 0.008})
+    apart = told_apart(problem, both)
+    assert apart.causes == one.causes
+    assert apart.values(0)['time'] == pytest.approx(0.004)
 
 
 @pytest.fixture(scope='module')
