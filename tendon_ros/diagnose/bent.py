@@ -26,6 +26,9 @@ HOLDS = 0.75
 POLLED = 0.5
 #: waves of a ripple that a motor has to pass
 SEEN = 0.5
+#: and how many where a turn has fewer than this, as hardly any motor: what comes once is any
+#: torque that follows the angle
+AGAIN, FEW = 2.0, 4.0
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring
 YIELDS = 0.25
@@ -63,8 +66,10 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
                 return True
         if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
-        if p.search == 'cycles' and values[p.name] * _turned(problem, candidate.place) < SEEN:
-            return True
+        if p.search == 'cycles':
+            least = AGAIN if values[p.name] < FEW else SEEN
+            if values[p.name] * _turned(problem, candidate.place) < least:
+                return True
     if candidate.effect == 'presliding_friction':
         travel = _travel(problem, candidate.place.removeprefix('pulley_'))
         if travel is not None and values['angle'] > YIELDS * travel:

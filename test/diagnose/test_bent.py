@@ -1,9 +1,14 @@
 """What a fit has bent an effect into is none; what is one event is one."""
 
+import math
+
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose.bent import at_once, degenerate, excuses
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.mark.parametrize(
@@ -25,6 +30,17 @@ from tendon_ros.identify.candidate import Candidate
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+@pytest.mark.parametrize(('cycles', 'bent'), [(2.5, True), (5.0, False)])
+def test_a_wave_that_comes_once_is_no_ripple_of_a_motor(measured_on, cycles, bent):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '6 s'), ('amplitude', '80 deg')))
+    problem = prepared([run], body).problem
+    assert np.ptp(run['actuator/pulley_body/position'].value) > 0.4 * math.tau
+    ripple = Candidate('torque_ripple', 'motor_body')
+    values = {'amplitude': 0.1, 'cycles': cycles, 'phase': 0.0}
+    assert degenerate(problem, ripple, values) is bent
 
 
 @pytest.mark.parametrize(('limit', 'excused'), [(3.0, False), (0.005, True)])
