@@ -40,7 +40,8 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
 
     :param problem: the data.
     :param candidate: any effect at any place.
-    :return: whether no reading of the sensor is negative by more than noise.
+    :return: whether no reading of the sensor is negative by more than noise, and by the file some
+        would be: a load cell on which the tip can only press has no sign to lose.
     """
     if not candidate.switches:
         return False
@@ -51,4 +52,7 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
         if measured.sensor.name == candidate.place
     ]
     read = np.concatenate(values) if values else np.zeros(0)
-    return read.size > 0 and float(read.min()) > -BELOW * float(np.ptp(read))
+    if not read.size or float(read.min()) <= -BELOW * float(np.ptp(read)):
+        return False
+    lost = problem.empty.joined(candidate, {p.name: p.typical for p in candidate.parameters})
+    return not np.allclose(problem.left(lost), problem.left(problem.empty))

@@ -47,6 +47,11 @@ def test_noise_about_zero_is_no_sign(axis, recorded):
     assert may_be_signless(problem, SIGN)
 
 
+def test_who_can_only_press_has_no_sign_to_lose(bench, measured_on):
+    problem = prepared([measured_on(bench, touching=True)], bench).problem
+    assert not may_be_signless(problem, Candidate('sensor_rectified', 'load_cell'))
+
+
 def test_a_lost_sign_is_found_beside_a_spring(axis, recorded):
     run = recorded(SPRING, LOST)
     problem = prepared([run], axis).problem
