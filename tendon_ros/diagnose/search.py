@@ -114,15 +114,9 @@ class Search:
                 if state is not found.start:
                     screen = Screen(self.problem, state, self._seen)
                     proposals = self._steps.screened(screen)
-                many = self._of_many(found) if turn == 0 else None
-                if many is None:
-                    grown = self._grown(found, state, screen, proposals)
-                    if turn == 0 and astray(self.problem, found.start, grown):
-                        grown = better(self.problem, grown, self._from_the_file(found))
-                if turn == 0:
-                    grown = better(self.problem, many, grown, self._without_sign(found))
-                if grown is many and many and outweighed(self.problem, found.start, many):
-                    found.unweighed = many
+                look = self._first if turn == 0 else self._grown
+                grown = look(found, state, screen, proposals)
+                if found.unweighed is not None:
                     return found
                 turn += 1
             if grown is not None:
@@ -144,6 +138,21 @@ class Search:
             state = challenged = found.final
         self._ordered(found)
         return found
+
+    def _first(
+        self, found: Found, before: Fit, screen: Screen, proposals: Sequence[Proposal]
+    ) -> Fit | None:
+        """Return what the first round finds, from wherever guesses may have to begin."""
+        many = self._of_many(found)
+        grown: Fit | None = None
+        if many is None:
+            grown = self._grown(found, before, screen, proposals)
+            if astray(self.problem, found.start, grown):
+                grown = better(self.problem, grown, self._from_the_file(found))
+        best = better(self.problem, many, grown, self._without_sign(found))
+        if many is not None and best is many and outweighed(self.problem, found.start, many):
+            found.unweighed = many
+        return best
 
     def _without_sign(self, found: Found) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
