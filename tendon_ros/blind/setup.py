@@ -12,6 +12,26 @@ from tendon_ros.blind.unknowns import AXIS_UNKNOWNS, UNKNOWNS
 
 
 @dataclass(frozen=True)
+class _Repertoire:
+    """
+    What is recorded of a kind of rig, and what can be wrong with it.
+
+    ``kinds``: its recordings, ``pressed``: those in which there is something to press on.
+    """
+
+    kinds: tuple[str, ...]
+    pressed: tuple[str, ...]
+    channel_sets: tuple[str, ...]
+    laws: tuple[Law, ...]
+    unknowns: tuple[Law, ...]
+
+
+_BENCH = _Repertoire(KINDS, ('contact', 'mixed'), CHANNEL_SETS, LAWS, UNKNOWNS)
+_AXIS = _Repertoire(AXIS_KINDS, (), ('motor',), AXIS_LAWS, AXIS_UNKNOWNS)
+_REPERTOIRES = {'bench': _BENCH, 'other': _BENCH, 'axis': _AXIS}
+
+
+@dataclass(frozen=True)
 class Setup:
     """A rig by its name, and one of its channel sets."""
 
@@ -21,21 +41,21 @@ class Setup:
     @property
     def kinds(self) -> tuple[str, ...]:
         """The recordings of a case."""
-        return AXIS_KINDS if self.bench == 'axis' else KINDS
+        return _REPERTOIRES[self.bench].kinds
 
     @property
     def laws(self) -> tuple[Law, ...]:
         """The faults that the catalogue may have."""
-        return AXIS_LAWS if self.bench == 'axis' else LAWS
+        return _REPERTOIRES[self.bench].laws
 
     @property
     def unknowns(self) -> tuple[Law, ...]:
         """The faults that no catalogue has."""
-        return AXIS_UNKNOWNS if self.bench == 'axis' else UNKNOWNS
+        return _REPERTOIRES[self.bench].unknowns
 
     def closed(self, kind: str) -> bool:
         """Return whether there is something to press on in a kind of recording."""
-        return self.bench != 'axis' and kind != 'free'
+        return kind in _REPERTOIRES[self.bench].pressed
 
     def places(self, law: Law) -> tuple[str, ...]:
         """Return the places of a law without those at sensors that are not there."""
@@ -52,4 +72,4 @@ def channel_sets(bench: str) -> tuple[str, ...]:
     :param bench: its name.
     :return: their names.
     """
-    return CHANNEL_SETS[:1] if bench == 'axis' else CHANNEL_SETS
+    return _REPERTOIRES[bench].channel_sets

@@ -54,5 +54,5 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
     read = np.concatenate(values) if values else np.zeros(0)
     if not read.size or float(read.min()) <= -BELOW * float(np.ptp(read)):
         return False
-    lost = problem.empty.joined(candidate, {p.name: p.typical for p in candidate.parameters})
+    lost = problem.empty.joined(candidate, find(candidate.effect).typical)
     return not np.allclose(problem.left(lost), problem.left(problem.empty))

@@ -30,6 +30,7 @@ from tendon_ros.diagnose.worth import (
     stands_out,
     worthwhile,
 )
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -159,10 +160,10 @@ class Search:
         fits = []
         for candidate in self._steps.candidates:
             if may_be_signless(self.problem, candidate):
-                there = {p.name: p.typical for p in candidate.parameters}
-                alone = self.problem.empty.joined(candidate, there)
+                lost = find(candidate.effect).typical
+                alone = self.problem.empty.joined(candidate, lost)
                 fits += [
-                    self._steps.from_afar(found.start.model.joined(candidate, there)),
+                    self._steps.from_afar(found.start.model.joined(candidate, lost)),
                     self._of_many(found, alone),
                     self._from_the_file(found, alone),
                 ]
