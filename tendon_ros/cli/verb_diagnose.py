@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tendon_ros.cli.arguments import takes_bags
 
+MINUTES = 10.0  # most diagnoses take one; guesses of many bodies, and loops that shake, take more
 HELP = 'say where the gap between recordings and model lies, and which effect causes it'
 
 
@@ -31,6 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='do without this effect; can be given several times',
     )
     parser.add_argument('--jobs', type=int, metavar='N', help='threads; default: one a core')
+    parser.add_argument(
+        '--minutes',
+        type=float,
+        default=MINUTES,
+        metavar='M',
+        help='after which no more causes are looked for, and what was found is judged; 0 for no '
+        'limit; default: %(default)g',
+    )
 
 
 def run(args: argparse.Namespace) -> None:
@@ -39,6 +48,7 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: parsed arguments.
     """
+    import math
     import os
 
     from tendon_ros.bags.reader import read_recording
@@ -55,6 +65,8 @@ def run(args: argparse.Namespace) -> None:
     jobs = args.jobs if args.jobs is not None else os.cpu_count() or 1
     if jobs < 1:
         raise RecordingError(f'--jobs {jobs}: give at least 1')
+    if not args.minutes >= 0.0:
+        raise RecordingError(f'--minutes {args.minutes:g}: give a time, or 0 for no limit')
     instrument = load_instrument(args.instrument)
     check_withheld(instrument, args.withhold)
     recordings = [read_recording(bag, args.namespace) for bag in args.bag]
@@ -69,6 +81,7 @@ def run(args: argparse.Namespace) -> None:
             jobs=jobs,
             report=report,
             memory=memory,
+            seconds=60.0 * args.minutes or math.inf,
         )
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')

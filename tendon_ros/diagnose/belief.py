@@ -118,7 +118,7 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     likely = chance(ready, found, k, signs)
     cause = found.final.model.causes[k]
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))
-    vague = len({c.effect for c in (cause, *equal)}) > ALIKE
+    vague = len({c.effect for c in (cause, *equal)}) > ALIKE or cause in found.unmet
     return Weighed(
         cause=cause,
         equal=equal,

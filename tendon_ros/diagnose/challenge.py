@@ -55,8 +55,9 @@ class Challenge:
         :param found: its last state, rivals and states without a cause are replaced.
         :param brief: whether only rivals matter that are far better.
         """
-        self._merge(found)
-        self._divide(found)
+        if not self._steps.patience.over:
+            self._merge(found)
+            self._divide(found)
         self._near = {}
         # guesses creep along valleys, and rivals are fitted from here on: theirs is no merit
         creeps = any(t.guessed for t in self._problem.tolerances)
@@ -65,8 +66,13 @@ class Challenge:
             changed |= self._converged(found)
         replaced = 0
         stood = self._stood
+        found.unmet = []
         while waiting := [c for c in found.final.model.causes if c not in stood]:
             cause = waiting[0]
+            if self._steps.patience.over:
+                found.unmet.append(cause)
+                stood[cause] = self._without(found, found.final.model.causes.index(cause)), []
+                continue
             self._steps.report(
                 f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
             )

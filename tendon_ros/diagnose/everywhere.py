@@ -68,8 +68,11 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     problem = steps.problem
     before = problem.empty if known is None else known
     begun = [everywhere(steps.candidates, before, part) for part in BEGINNINGS]
-    rough = steps.pool.map(lambda m: problem.fitted(m, rounds=FAR, accuracy=1e-2), begun)
-    state = min(rough, key=lambda fit: fit.cost)
+    # the way is long, and rollouts with all of it are slow
+    rougher = problem.rougher()
+    rough = steps.pool.map(lambda m: rougher.fitted(m, rounds=FAR, accuracy=1e-2), begun)
+    best = min(rough, key=lambda fit: fit.cost)
+    state = problem.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
     while math.isfinite(state.cost):
         least = needed(problem, start, state)
         smaller = _idle_dropped(problem, state, least)

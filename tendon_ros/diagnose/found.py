@@ -24,14 +24,16 @@ class Found:
 
     ``states``: the start, then one for each cause that joins, most telling first. ``rivals``,
     ``without``: for each cause of the last state, who was fitted in its place, and the fit
-    without it. ``proposals``: of the first screening, the best of each candidate. ``unweighed``:
-    where it stopped early, since channels should weigh by what this state leaves of them.
+    without it. ``unmet``: causes in whose place nobody was fitted, for want of time.
+    ``proposals``: of the first screening, the best of each candidate. ``unweighed``: where it
+    stopped early, since channels should weigh by what this state leaves of them.
     """
 
     states: list[Fit] = field(default_factory=list)
     rivals: list[list[Rival]] = field(default_factory=list)
     without: list[Fit] = field(default_factory=list)
     proposals: list[Proposal] = field(default_factory=list)
+    unmet: list[Candidate] = field(default_factory=list)
     unweighed: Fit | None = None
 
     @property

@@ -69,13 +69,13 @@ class Prepared:
 
     def quieter(self, other: Prepared) -> bool:
         """
-        Return whether a channel is much less noisy here.
+        Return whether a channel tells much more here.
 
         :param other: the same recordings.
-        :return: whether what was taken for noise there was not.
+        :return: whether what was taken for noise there was not, and noise is what counts.
         """
         return any(
-            np.median(b.noise) > QUIETER * np.median(a.noise)
+            np.median(b.doubt) > QUIETER * np.median(a.doubt)
             for mine, its in zip(
                 self.whole.rollouts.segments, other.whole.rollouts.segments, strict=True
             )
@@ -106,7 +106,10 @@ class Prepared:
             )
             for segment in self.whole.rollouts.segments
         ]
-        return _problems(self.whole.rollouts.like(segments), self.noise, self.shift, self.looser)
+        rollouts = self.whole.rollouts
+        tolerance = loosest(rollouts.instrument, segments)
+        again = Rollouts(rollouts.instrument, segments, rollouts.jobs, tolerance)
+        return _problems(again, self.noise, self.shift, self.looser)
 
     def moved(self, shift: int) -> Prepared:
         """
@@ -143,7 +146,7 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
     noise = noise_of_counts(instrument, segments, recordings, predicted)
     segments = noise.given(segments, predicted)
-    tolerance = loosest(instrument, segments, predicted)
+    tolerance = loosest(instrument, segments)
     return _problems(Rollouts(instrument, segments, jobs, tolerance), noise)
 
 

@@ -19,6 +19,7 @@ from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
@@ -56,6 +57,7 @@ class Search:
     :param report: called with what is being done and the part that is done.
     :param memory: of the steps of an interrupted search.
     :param begun: what an earlier search found in the same recordings.
+    :param patience: once it has run out, the search ends with what it has.
     """
 
     def __init__(
@@ -66,9 +68,11 @@ class Search:
         report: Report = lambda _what, _done: None,
         memory: Memory | None = None,
         begun: Model | None = None,
+        patience: Patience | None = None,
     ) -> None:
         self.problem = problem
-        self._steps = Steps(problem, candidates, jobs, report)
+        self._patience = patience or Patience()
+        self._steps = Steps(problem, candidates, jobs, report, self._patience)
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
         self._challenge = Challenge(self._steps, self._seen)
@@ -98,7 +102,8 @@ class Search:
             found.states.append(state)
         if self._begun is not None and self._begun.causes and len(found.states) == 1:
             # what was not worth having while others outweighed the channels that it shows in
-            earlier = self._of_many(found, self._begun) if self.problem.by_misfit else None
+            anew = self.problem.by_misfit and not self._patience.over
+            earlier = self._of_many(found, self._begun) if anew else None
             if earlier is None:
                 earlier = self._steps.pruned(found.start, self._steps.settled(self._begun))
             if self._believed(found, found.start, earlier):
@@ -108,8 +113,13 @@ class Search:
         challenged: Fit | None = None
         while True:
             grown: Fit | None = None
-            if turn < ROUNDS and (
-                open_question(self.problem, state) or (turn == 0 and _promising(state, proposals))
+            if (
+                turn < ROUNDS
+                and not self._patience.over
+                and (
+                    open_question(self.problem, state)
+                    or (turn == 0 and _promising(state, proposals))
+                )
             ):
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:

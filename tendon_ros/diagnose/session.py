@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+import math
 import time
 
 from tendon_ros.base.recording import Recording
@@ -28,6 +29,7 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
@@ -35,6 +37,7 @@ from tendon_ros.diagnose.spread import known_words, loose
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
 
@@ -66,6 +69,7 @@ def diagnose(
     plan: bool = True,
     report: Report = lambda _what, _done: None,
     memory: Memory | None = None,
+    seconds: float = math.inf,
 ) -> Outcome:
     """
     Say where the gap between recordings and model lies, what causes it, how far it shrinks.
@@ -77,6 +81,7 @@ def diagnose(
     :param plan: whether to look for the next experiment.
     :param report: called with what is being done and the part that is done, 0 to 1.
     :param memory: keeps the steps, so that an interrupted run goes on.
+    :param seconds: after which the search begins nothing more and what it has is judged.
     :return: the outcome.
     :raises RecordingError: on recordings that cannot be diagnosed.
     """
@@ -90,7 +95,9 @@ def diagnose(
     candidates = everyone(
         instrument, sorted(measured), withhold, magnitude_of(intake.recordings, instrument)
     )
-    ready, found = _searched(ready, candidates, jobs, report, memory)
+    patience = Patience(seconds)
+    ready, found = _searched(ready, candidates, jobs, report, memory, patience)
+    cut = patience.words(found.unmet)
     problem = ready.problem
     report('judging', 0.85)
     held = belief(ready, found)
@@ -139,6 +146,7 @@ def diagnose(
             *said_of_torque(instrument),
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
+            *cut,
         ),
     )
     evidence = Evidence(
@@ -163,36 +171,46 @@ def _searched(
     jobs: int,
     report: Report,
     memory: Memory | None,
+    patience: Patience,
 ) -> tuple[Prepared, Found]:
     """Search, and on where noise, or blocks that were held out, held something to be found."""
+
+    def search(begun: Model | None, kept: Memory | None = None) -> Found:
+        return Search(ready.problem, candidates, jobs, report, kept, begun, patience).run()
+
     by = memory.weighed() if memory else None
     ready = ready.weighed(by) if by is not None else ready
-    found = Search(ready.problem, candidates, jobs, report, memory, by).run()
+    found = search(by, memory)
     if found.unweighed is not None:
         report('looking again: channels weigh by what stays of them', 0.0)
         by = found.unweighed.model
         ready = ready.weighed(by)
         if memory is not None:
             memory.weigh(by)
-        found = Search(ready.problem, candidates, jobs, report, memory, by).run()
+        found = search(by, memory)
     again = ready.heard_again(found.final.model)
     # what stands in for something unknown may take noise away as well, and tells no more
-    if again.quieter(ready) and not hopeless(ready.problem, found.start, found.final):
+    if again.quieter(ready) and _worth_more(ready, found, patience):
         report('looking again: what was taken for noise was not', 0.0)
         ready = again
-        found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
+        found = search(found.final.model)
     # what stands in for something unknown foretells nothing, wherever one looks
-    if surprising(ready, found) and not hopeless(ready.problem, found.start, found.final):
+    if surprising(ready, found) and _worth_more(ready, found, patience):
         report('looking again: something happened in what was held out', 0.0)
         ready = ready.moved(KEPT // 2)
-        found = Search(ready.problem, candidates, jobs, report, begun=found.final.model).run()
+        found = search(found.final.model)
     # numbers are no causes where the file's others are off as far
     for _ in range(LOOSENED):
-        wider = loose(ready, found)
+        wider = None if patience.over else loose(ready, found)
         if wider is None:
             break
         report('looking again: the numbers of the file are not that well known', 0.0)
         begun = wider.begun(ready, found)
         ready = ready.loosened(wider.looser)
-        found = Search(ready.problem, candidates, jobs, report, begun=begun).run()
+        found = search(begun)
     return ready, found
+
+
+def _worth_more(ready: Prepared, found: Found, patience: Patience) -> bool:
+    """Return whether another search may tell more, and there is time for it."""
+    return not patience.over and not hopeless(ready.problem, found.start, found.final)

@@ -12,6 +12,7 @@ from tendon_ros.diagnose.bent import at_once, degenerate, excuses
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.effects import find
 from tendon_ros.identify.afar import afar
@@ -70,15 +71,22 @@ class Steps:
     :param candidates: all that may be named.
     :param jobs: threads.
     :param report: called with what is being done and the part that is done.
+    :param patience: once it has run out, nothing more is begun.
     """
 
     def __init__(
-        self, problem: Problem, candidates: Sequence[Candidate], jobs: int, report: Report
+        self,
+        problem: Problem,
+        candidates: Sequence[Candidate],
+        jobs: int,
+        report: Report,
+        patience: Patience,
     ) -> None:
         self.problem = problem
         self.candidates = tuple(candidates)
         self._allowed = {(c.effect, c.place): c for c in candidates}
         self.report = report
+        self.patience = patience
         self.pool = ThreadPoolExecutor(jobs)
 
     def screened(

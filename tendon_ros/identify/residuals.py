@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 import math
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,7 @@ class Residuals:
         self.rollouts = rollouts
         self.tolerances = tuple(tolerances)
         self._segments = rollouts.segments
+        self._used = tuple(used)
         self._masks = tuple(
             np.isfinite(measured) & mask
             for measured, mask in zip(rollouts.measured, used, strict=True)
@@ -60,6 +62,10 @@ class Residuals:
             self._segments, self._masks, strict=True)]  # fmt: skip
         self._time = np.concatenate(times)
         self._segment = np.repeat(np.arange(len(times)), [len(t) for t in times])
+
+    def rougher(self) -> Self:
+        """Return the same by rollouts that are as rough as any may be: for first looks."""
+        return type(self)(self.rollouts.rougher(), self.tolerances, self._used)
 
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:

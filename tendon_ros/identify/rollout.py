@@ -28,10 +28,12 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 USUAL = 0.2  # part of a motor's torques that no unknown limit cuts off
-TOLERANCE = 4e-6  # [rad] a step; a hundredth of an encoder's count
-ROUGH = 2e-5  # the same where nothing that is measured notices
-#: of the noise: what that may change of the file's model. Dry friction makes it some five times
-#: more, and derivatives are taken from changes of a tenth
+#: [rad] a step; a hundredth of an encoder's count
+TOLERANCE = 4e-6
+#: the same where nothing that is measured notices, the roughest first
+ROUGHER = (1e-4, 2e-5)
+#: part of what the right model may be off that this may change of the file's. Dry friction makes
+#: it some five times more, and derivatives are taken from changes of a tenth
 UNNOTICED = 3e-3
 WHOLE = 1e-6  # part of a bin that no delay is told by
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
@@ -95,6 +97,10 @@ class Rollouts:
         :return: the rollouts.
         """
         return Rollouts(self.instrument, segments, self.jobs, self.tolerance)
+
+    def rougher(self) -> Rollouts:
+        """Return the same rollouts, as rough as any may be."""
+        return Rollouts(self.instrument, self.segments, self.jobs, ROUGHER[0])
 
     @cached_property
     def measured(self) -> tuple[FloatArray, ...]:
@@ -249,26 +255,34 @@ def _sooner(
         yield EffectUse('sensor_delay', name, {'time': max(rest, 0.0)})
 
 
-def loosest(
-    instrument: Instrument, segments: Sequence[Segment], predicted: Sequence[FloatArray]
-) -> float:
+def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
     """
     Return how roughly rollouts may be computed.
 
     :param instrument: the network.
-    :param segments: what was measured, with its noise.
-    :param predicted: of each the channels as the file has them, computed finely.
+    :param segments: what was measured, with its noise and what models leave of it.
     :return: a tolerance of a step [rad].
     """
-    rough = Rollouts(instrument, segments, tolerance=ROUGH).predicted([[] for _ in segments])
-    changes = [
-        (row - fine) / m.noise
-        for segment, rows, fines in zip(segments, rough, predicted, strict=True)
-        for m, row, fine in zip(segment.measured, rows, fines, strict=True)
+    fine = _of_the_file(instrument, segments, TOLERANCE)
+    for tolerance in ROUGHER:
+        rough = _of_the_file(instrument, segments, tolerance)
+        changes = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(rough, fine, strict=True)]
+        # infinite where the file's own model diverges
+        if float(np.max(changes)) < UNNOTICED:
+            return tolerance
+    return TOLERANCE
+
+
+def _of_the_file(
+    instrument: Instrument, segments: Sequence[Segment], tolerance: float
+) -> list[FloatArray]:
+    """Return all channels as the file has them, by what the right model may be off."""
+    rows = Rollouts(instrument, segments, tolerance=tolerance).predicted([[] for _ in segments])
+    return [
+        row / m.doubt
+        for segment, of_segment in zip(segments, rows, strict=True)
+        for m, row in zip(segment.measured, of_segment, strict=True)
     ]
-    # infinite where the file's own model diverges
-    noticed = float(np.max([np.sqrt(np.mean(c**2)) for c in changes]))
-    return ROUGH if noticed < UNNOTICED else TOLERANCE
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:
