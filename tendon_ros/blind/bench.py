@@ -3,7 +3,8 @@ The rigs: what their instrument files say, and the same as tables for the genera
 
 ``bench`` is the installed ``bench_rig``. ``other`` differs in radii, coupling ratios, inertias,
 damping, cable curve, pretension and gains; its file is written beside the cases. ``axis`` is one
-body on a motor and has no cable; its inertia and damping are guessed.
+body on a motor and has no cable; its inertia and damping are guessed. ``arm`` is a weight on a
+servo: its weight alone is known well, and 100 Hz and 4096 counts are all that it reports.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from scipy.interpolate import CubicSpline
 from tendon_ros.base.errors import InstrumentError, listed
 from tendon_ros.blind import columns as k
 from tendon_ros.blind.rig import FloatArray, Rig
-from tendon_ros.model.instrument import Controller, Curve, Instrument
+from tendon_ros.model.instrument import Controller, Curve, EffectUse, Instrument
 from tendon_ros.model.instrument_file import load_instrument
 
-BENCHES = ('bench', 'other', 'axis')
+BENCHES = ('bench', 'other', 'axis', 'arm')
 PULLEYS = ('M', 'L', '1', '2', '3')
 LOOPS = ('m1', '12', 'L3')
 MOTORS = ('M', 'L')
@@ -38,7 +39,7 @@ def nominal(bench: str) -> Instrument:
     """
     Return what the user knows of a bench.
 
-    :param bench: ``bench``, ``other`` or ``axis``.
+    :param bench: one of :data:`BENCHES`.
     :return: the instrument.
     :raises InstrumentError: for any other name.
     """
@@ -48,6 +49,8 @@ def nominal(bench: str) -> Instrument:
         return _other(load_instrument('bench_rig'))
     if bench == 'axis':
         return _axis(load_instrument('bench_rig'))
+    if bench == 'arm':
+        return _arm(_axis(load_instrument('bench_rig')))
     raise InstrumentError(f'{bench}: no such bench; there are {listed(BENCHES)}')
 
 
@@ -120,6 +123,33 @@ def _axis(base: Instrument) -> Instrument:
     )
 
 
+def _arm(axis: Instrument) -> Instrument:
+    """Return a weight on a servo, whose load is in parts of a torque that nobody knows."""
+    of_sensor = {'encoder_M': (math.tau / 4096, 0.0), 'torque_M': (2.5e-3, 1e-2)}
+    return replace(
+        axis,
+        name='arm_rig',
+        description='a weight on a servo, torque in parts of what it can',
+        pulleys=tuple(replace(p, inertia=7e-3, damping=0.25) for p in axis.pulleys),
+        motors=tuple(
+            replace(m, controller=Controller(kp=12.0, ki=0.0, kd=0.0, limit=2.5))
+            for m in axis.motors
+        ),
+        sensors=tuple(
+            replace(s, resolution=of_sensor[s.name][0], noise=of_sensor[s.name][1])
+            for s in axis.sensors
+        ),
+        effects=(EffectUse('gravity', 'pulley_M', {'torque': 0.4, 'phase': 0.0}),),
+        tolerances={
+            'pulley_M.inertia': 0.3,
+            'pulley_M.damping': math.inf,
+            'motor_M.torque_gain': math.inf,
+            'pulley_M.gravity.torque': 0.05,
+            'pulley_M.gravity.phase': math.radians(1.0),
+        },
+    )
+
+
 @cache
 def _table(bench: str) -> FloatArray:
     """Return the tension of one cable at multiples of :data:`SPACING`, by a spline of our own."""
@@ -145,6 +175,11 @@ def nominal_rig(bench: str) -> Rig:
     pulleys[:, [k.STRIBECK_SPEED, k.NOTCH_WIDTH, k.WARMING_TIME, k.PUSH_LENGTH]] = 1.0
     for body in one.pulleys:
         pulleys[PULLEYS.index(body.name), [k.INERTIA, k.DAMPING]] = body.inertia, body.damping
+    for weight in one.effects:
+        row = PULLEYS.index(weight.place.removeprefix('pulley_'))
+        pulleys[row, [k.WEIGHT, k.WEIGHT_PHASE]] = (
+            weight.parameters['torque'], weight.parameters['phase'],
+        )  # fmt: skip
     loops = np.zeros((3, k.LOOP_COLUMNS))
     loops[:, [k.STIFFNESS, k.FAST_TIME, k.SLOW_TIME, k.SLIP_LENGTH]] = 1.0
     routes = np.zeros((3, 5))

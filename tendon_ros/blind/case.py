@@ -16,7 +16,7 @@ import numpy as np
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import Recording
 from tendon_ros.blind import columns as k
-from tendon_ros.blind.bench import nominal, nominal_rig, PULLEYS
+from tendon_ros.blind.bench import MOTORS, nominal, nominal_rig, PULLEYS
 from tendon_ros.blind.faults import chosen, Fault, renewed, rig_with
 from tendon_ros.blind.gap import gap_of, Ran
 from tendon_ros.blind.laws import KIN
@@ -36,6 +36,14 @@ PLAIN, WEAK = (3.0, 400.0), (1.0, 3.0)
 _TRIES = 60
 _SAME = 6  # tries at one place
 _WHEEL = 0.03  # [m]: the motors' pulleys for which the motions are written
+#: where the tables have what a file knows how well
+_COLUMNS = {
+    'inertia': k.INERTIA,
+    'damping': k.DAMPING,
+    'torque_gain': k.GAIN,
+    'gravity.torque': k.WEIGHT,
+    'gravity.phase': k.WEIGHT_PHASE,
+}
 #: what is guessed may be so many times as large or as small
 _GUESS = 2.0
 
@@ -45,8 +53,9 @@ class Settings:
     """
     What cases are like.
 
-    ``bench``: the rig, ``bench``, ``other`` or ``axis``; ``nuisance``: one standard deviation of
-    the relative error of every inertia, stiffness and preload, three times that for damping;
+    ``bench``: the rig, one of :data:`~tendon_ros.blind.bench.BENCHES`; ``nuisance``: one standard
+    deviation of the relative error of every inertia, stiffness and preload, three times that for
+    damping;
     ``strata``, ``channels``: those to take in turn.
     """
 
@@ -90,7 +99,7 @@ def made(seed: int, index: int, settings: Settings | None = None) -> Case:
     commands = {kind: setpoints(kind, reach, rng) for kind in setup.kinds}
     faults, ran, gaps = _faulty(base, stratum, setup, commands, settings.nuisance, rng)
     recordings = {
-        kind: recorded(kind, one.values, one.out, commands[kind], instrument, rng)
+        kind: recorded(kind, one.values, one.out, commands[kind], instrument, setup.sampling, rng)
         for kind, one in ran.items()
     }
     label = {
@@ -141,13 +150,17 @@ def disturbed(rig: Rig, nuisance: float, rng: np.random.Generator) -> Rig:
 
 
 def _misjudge(rig: Rig, instrument: Instrument, rng: np.random.Generator) -> None:
-    """Let what the file guesses of bodies be something else."""
-    columns = {'inertia': k.INERTIA, 'damping': k.DAMPING}
+    """Let what the file guesses be something else, and what it knows so well be as far off."""
     for name, tolerance in instrument.tolerances.items():
+        place, quantity = name.split('.', 1)
+        kind, _, of = place.partition('_')
+        row = rig.motors[MOTORS.index(of)] if kind == 'motor' else rig.pulleys[PULLEYS.index(of)]
         if math.isinf(tolerance):
-            place, quantity = name.split('.')
-            row = PULLEYS.index(place.removeprefix('pulley_'))
-            rig.pulleys[row, columns[quantity]] *= _GUESS ** rng.uniform(-1.0, 1.0)
+            row[_COLUMNS[quantity]] *= _GUESS ** rng.uniform(-1.0, 1.0)
+        elif quantity.endswith('.phase'):
+            row[_COLUMNS[quantity]] += tolerance * rng.standard_normal()
+        else:
+            row[_COLUMNS[quantity]] *= math.exp(tolerance * rng.standard_normal())
 
 
 def ran_all(

@@ -107,9 +107,14 @@ def friction_limit(row: Row, omega: float, bristle: float, load: float) -> float
     return limit
 
 
+def hanging(row: Row, theta: float) -> float:
+    """Return the torque of a weight [N m]."""
+    return -row[WEIGHT] * math.sin(theta - row[WEIGHT_PHASE])
+
+
 def other_torque(row: Row, theta: float, omega: float, t: float) -> float:
     """Return springs, weights, pushes and what no catalogue has [N m]."""
-    torque = -row[WEIGHT] * math.sin(theta - row[WEIGHT_PHASE])
+    torque = hanging(row, theta)
     torque -= row[SPRING] * (theta - row[SPRING_REST]) + row[CUBIC] * theta**3
     torque -= row[DRAG] * omega * abs(omega)
     if row[PUSH] != 0.0:

@@ -63,6 +63,7 @@ from tendon_ros.blind.forces import (
     aged,
     contact_force,
     friction_limit,
+    hanging,
     off_command,
     other_torque,
     pulse,
@@ -202,6 +203,8 @@ def run(
                 torque[p] += other_torque(row, theta[p], omega[p], t)
                 stiffness = row[BRISTLE]
                 if stiffness > 0.0:
+                    if load[p] == 0.0:  # no cable: what hangs on it is what presses
+                        load[p] = abs(hanging(row, theta[p]))
                     limit = friction_limit(row, omega[p], bristle[p], load[p])
                     limit += row[SIDED] * abs(theta[p])
                     if limit > 1e-9:

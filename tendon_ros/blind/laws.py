@@ -78,6 +78,12 @@ AXIS_LAWS: tuple[Law, ...] = (
     Law('disturbance', _M, 0.08, 1.2, pulley.disturbance, event=True),
 )
 
+#: the same of a weight on a servo; the weight is in its file
+ARM_LAWS: tuple[Law, ...] = (
+    *(law for law in AXIS_LAWS if law.effect != 'gravity'),
+    Law('tension_friction', _M, 0.05, 0.6, pulley.tension),
+)
+
 _DRY = ('coulomb_friction', 'stribeck_friction', 'presliding_friction', 'asymmetric_friction')
 _CONSTANT = ('torque_bias', 'gravity', 'joint_spring', 'disturbance')
 _SHIFT = ('encoder_offset', 'contact_position', 'cable_slip')

@@ -59,8 +59,9 @@ class Rig:
         return float(self.loops[loop, k.PRELOAD])
 
     def load(self, pulley: int) -> float:
-        """Return the load of the cables on a pulley at rest [N m]."""
-        return float(2.0 * np.abs(self.routes[:, pulley]) @ self.loops[:, k.PRELOAD])
+        """Return the load of the cables on a pulley at rest [N m]; of its weight without any."""
+        cables = float(2.0 * np.abs(self.routes[:, pulley]) @ self.loops[:, k.PRELOAD])
+        return cables or float(self.pulleys[pulley, k.WEIGHT])
 
 
 def run(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from tendon_ros.base.recording import Channel, Recording
@@ -13,8 +14,6 @@ from tendon_ros.blind.bench import MOTORS, noise, resolution
 from tendon_ros.blind.rig import BEFORE, FloatArray, Rig, TICK
 from tendon_ros.model.instrument import Instrument
 
-#: a row is recorded every so many ticks
-EVERY = 2
 EPOCH_NS = 1_700_000_000_000_000_000
 
 JOINTS = ('1', '2', '3')
@@ -22,6 +21,32 @@ CHANNEL_SETS = ('motor', 'force', 'joint')
 
 #: coloured part of the torque noise by the white one, and its memory [s]
 _COLOURED, _MEMORY = 0.5, 0.01
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """
+    When rows are recorded: ``every`` so many ticks, up to ``late`` ticks later, stamped truly.
+
+    ``lost``: the part of the rows that is not there.
+    """
+
+    every: int = 2
+    late: int = 0
+    lost: float = 0.0
+
+    def rows(self, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
+        """
+        Return which ticks are recorded.
+
+        :param count: of ticks.
+        :param rng: draws what is late, and what is lost.
+        :return: their numbers.
+        """
+        rows = np.arange(0, count, self.every)
+        if self.late:
+            rows = np.minimum(rows + rng.integers(0, self.late + 1, rows.size), count - 1)
+        return rows[rng.random(rows.size) >= self.lost] if self.lost else rows
 
 
 @dataclass(frozen=True)
@@ -91,6 +116,7 @@ def recorded(
     out: FloatArray,
     setpoint: FloatArray,
     instrument: Instrument,
+    sampling: Sampling,
     rng: np.random.Generator,
 ) -> Recording:
     """
@@ -101,13 +127,14 @@ def recorded(
     :param out: of the same run, for the motors' angles.
     :param setpoint: commanded, one row a tick.
     :param instrument: gives resolution and noise.
+    :param sampling: when.
     :param rng: of the noise.
-    :return: 500 rows a second.
+    :return: the recording.
     """
     first = round(BEFORE / TICK)
-    rows = slice(first, None, EVERY)
-    stamps = np.arange(len(out[rows]), dtype=np.int64) * round(EVERY * TICK * 1e9)
-    time = stamps / 1e9
+    ticks = sampling.rows(len(out) - first, rng)
+    rows = first + ticks
+    time = ticks * round(TICK * 1e9) / 1e9
     channels = []
     present = {sensor.name for sensor in instrument.sensors}
     for n, m in enumerate(MOTORS):
@@ -120,15 +147,15 @@ def recorded(
     for sensor in (*TORQUES, CELL, *ANGLES):
         if sensor.channel not in values or sensor.name not in present:
             continue
-        value = values[sensor.channel][::EVERY]
-        if sensor in ANGLES:
-            step = resolution(instrument, sensor.name)
-            value = np.round(value / step) * step
-        else:
+        value = values[sensor.channel][ticks]
+        step = resolution(instrument, sensor.name)
+        if sensor not in ANGLES:
             sigma = noise(instrument, sensor.name)
             value = value + sigma * rng.standard_normal(value.size)
             if sensor in TORQUES:
-                value = value + sigma * _COLOURED * _coloured(rng, value.size)
+                value = value + sigma * _COLOURED * _coloured(rng, value.size, sampling.every)
+        if step > 0.0:
+            value = np.round(value / step) * step
         channels.append(Channel(sensor.channel, time, value))
     return Recording(
         name,
@@ -138,9 +165,9 @@ def recorded(
     )
 
 
-def _coloured(rng: np.random.Generator, size: int) -> FloatArray:
+def _coloured(rng: np.random.Generator, size: int, every: int) -> FloatArray:
     """Return noise of variance one that remembers itself for a while."""
-    keep = float(np.exp(-EVERY * TICK / _MEMORY))
+    keep = float(np.exp(-every * TICK / _MEMORY))
     white = np.sqrt(1.0 - keep**2) * rng.standard_normal(size)
     return np.asarray(lfilter([1.0], [1.0, -keep], white), dtype=np.float64)
 

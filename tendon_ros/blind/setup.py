@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tendon_ros.blind.law import Law
-from tendon_ros.blind.laws import AXIS_LAWS, LAWS
+from tendon_ros.blind.laws import ARM_LAWS, AXIS_LAWS, LAWS
 from tendon_ros.blind.motion import AXIS_KINDS, KINDS
-from tendon_ros.blind.sensing import CHANNEL_SETS
+from tendon_ros.blind.sensing import CHANNEL_SETS, Sampling
 from tendon_ros.blind.unknowns import AXIS_UNKNOWNS, UNKNOWNS
 
 
@@ -16,7 +16,8 @@ class _Repertoire:
     """
     What is recorded of a kind of rig, and what can be wrong with it.
 
-    ``kinds``: its recordings, ``pressed``: those in which there is something to press on.
+    ``kinds``: its recordings, ``pressed``: those in which there is something to press on;
+    ``sampling``: when rows are recorded.
     """
 
     kinds: tuple[str, ...]
@@ -24,11 +25,15 @@ class _Repertoire:
     channel_sets: tuple[str, ...]
     laws: tuple[Law, ...]
     unknowns: tuple[Law, ...]
+    sampling: Sampling
 
 
-_BENCH = _Repertoire(KINDS, ('contact', 'mixed'), CHANNEL_SETS, LAWS, UNKNOWNS)
-_AXIS = _Repertoire(AXIS_KINDS, (), ('motor',), AXIS_LAWS, AXIS_UNKNOWNS)
-_REPERTOIRES = {'bench': _BENCH, 'other': _BENCH, 'axis': _AXIS}
+_BENCH = _Repertoire(KINDS, ('contact', 'mixed'), CHANNEL_SETS, LAWS, UNKNOWNS, Sampling())
+_AXIS = _Repertoire(AXIS_KINDS, (), ('motor',), AXIS_LAWS, AXIS_UNKNOWNS, Sampling())
+_ARM = _Repertoire(
+    AXIS_KINDS, (), ('motor',), ARM_LAWS, AXIS_UNKNOWNS, Sampling(every=10, late=2, lost=0.01)
+)
+_REPERTOIRES = {'bench': _BENCH, 'other': _BENCH, 'axis': _AXIS, 'arm': _ARM}
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,11 @@ class Setup:
     def unknowns(self) -> tuple[Law, ...]:
         """The faults that no catalogue has."""
         return _REPERTOIRES[self.bench].unknowns
+
+    @property
+    def sampling(self) -> Sampling:
+        """When rows are recorded."""
+        return _REPERTOIRES[self.bench].sampling
 
     def closed(self, kind: str) -> bool:
         """Return whether there is something to press on in a kind of recording."""
