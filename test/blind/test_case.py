@@ -7,8 +7,8 @@ import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.blind import columns as k
-from tendon_ros.blind.bench import nominal_rig
-from tendon_ros.blind.case import disturbed, made, PATTERN, PLAIN, Settings, WEAK
+from tendon_ros.blind.bench import nominal, nominal_rig
+from tendon_ros.blind.case import _misjudge, disturbed, made, PATTERN, PLAIN, Settings, WEAK
 from tendon_ros.blind.faults import chosen
 from tendon_ros.blind.laws import MERGING
 from tendon_ros.blind.setup import Setup
@@ -60,6 +60,35 @@ def test_an_axis_has_motor_signals_alone():
     for recording in one.recordings.values():
         assert {name.split('/')[0] for name in recording.channels} == {'actuator', 'setpoint'}
         assert {name.split('/')[1] for name in recording.channels} == {'pulley_M'}
+
+
+def test_an_arm_is_seen_as_a_bus_leaves_it():
+    one = made(7, 1, Settings(bench='arm', channels=('motor',)))
+    assert [use.effect for use in one.instrument.effects] == ['gravity']
+    for recording in one.recordings.values():
+        angle = recording['actuator/pulley_M/position']
+        steps = np.diff(angle.time)
+        assert np.median(steps) == pytest.approx(0.01)
+        assert np.std(steps) > 0.0
+        assert steps.max() > 0.015  # a row is lost now and then
+        counts = angle.value / (np.pi / 2048)
+        np.testing.assert_allclose(counts, np.round(counts), atol=1e-9)
+
+
+def test_what_a_file_knows_well_is_as_far_off_as_it_says():
+    instrument, rng = nominal('arm'), np.random.default_rng(0)
+    rigs = [nominal_rig('arm') for _ in range(400)]
+    for rig in rigs:
+        _misjudge(rig, instrument, rng)
+    weight = np.log([rig.pulleys[0, k.WEIGHT] for rig in rigs])
+    assert weight.std() == pytest.approx(0.05, rel=0.15)
+    assert np.std([rig.pulleys[0, k.WEIGHT_PHASE] for rig in rigs]) == pytest.approx(
+        np.deg2rad(1.0), rel=0.15
+    )
+    gain = np.array([rig.motors[0, k.GAIN] for rig in rigs])
+    assert gain.min() < 0.55
+    assert gain.max() > 1.8
+    assert {rig.motors[1, k.GAIN] for rig in rigs} == {1.0}
 
 
 def test_the_body_of_an_axis_is_not_as_guessed(monkeypatch):

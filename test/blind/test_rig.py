@@ -9,7 +9,7 @@ from tendon_ros.blind.case import PLAIN, ran_all
 from tendon_ros.blind.faults import Fault, rig_with
 from tendon_ros.blind.gap import drive_of, gap_of
 from tendon_ros.blind.law import Law
-from tendon_ros.blind.laws import AXIS_LAWS, KIN, LAWS
+from tendon_ros.blind.laws import ARM_LAWS, AXIS_LAWS, KIN, LAWS
 from tendon_ros.blind.motion import AXIS_KINDS, KINDS, LENGTHS, setpoints
 from tendon_ros.blind.rig import BEFORE, run
 from tendon_ros.blind.sensing import clean, floors
@@ -50,10 +50,11 @@ def test_a_rig_without_faults_is_the_model(bench):
     assert np.abs(difference).max() < 3e-4
 
 
-def test_an_axis_without_faults_is_the_model():
+@pytest.mark.parametrize('rig', ['axis', 'arm'])
+def test_one_body_without_faults_is_the_model(rig):
     setpoint = setpoints('fast', np.ones(2), np.random.default_rng(1))[:6000]
-    out = run(nominal_rig('axis'), setpoint, closed=False)
-    rows = Simulation(nominal('axis'), pose={'M': 0.0}).run(setpoint[:, :1], 1)
+    out = run(nominal_rig(rig), setpoint, closed=False)
+    rows = Simulation(nominal(rig), pose={'M': 0.0}).run(setpoint[:, :1], 1)
     assert np.ptp(out[:, k.ANGLE]) > 0.5
     assert np.abs(rows.angle[1000:, 0] - out[1000:, k.ANGLE]).max() < 3e-3
 
@@ -65,16 +66,24 @@ def test_an_axis_without_faults_is_the_model():
 )
 def test_every_fault_of_an_axis_makes_a_gap(law, place):
     faults = (Fault(law, place, law.high, 5, AXIS_KINDS),)
-    assert axis_gap(faults) > PLAIN[0]
+    assert body_gap('axis', faults) > PLAIN[0]
 
 
-def test_an_axis_without_faults_has_no_gap():
-    assert axis_gap(()) < 0.8
+@pytest.mark.parametrize('law', ARM_LAWS, ids=lambda law: law.effect)
+def test_every_fault_of_an_arm_makes_a_gap(law):
+    [place] = law.places
+    faults = (Fault(law, place, law.high, 5, AXIS_KINDS),)
+    assert body_gap('arm', faults) > PLAIN[0]
 
 
-def axis_gap(faults):
-    """Return what the first fault, or nothing, explains of three recordings of an axis."""
-    setup, base, rng = Setup('axis', 'motor'), nominal_rig('axis'), np.random.default_rng(1)
+@pytest.mark.parametrize('rig', ['axis', 'arm'])
+def test_one_body_without_faults_has_no_gap(rig):
+    assert body_gap(rig, ()) < 0.8
+
+
+def body_gap(rig, faults):
+    """Return what the first fault, or nothing, explains of three recordings of one body."""
+    setup, base, rng = Setup(rig, 'motor'), nominal_rig(rig), np.random.default_rng(1)
     commands = {kind: setpoints(kind, np.ones(2), rng) for kind in AXIS_KINDS}
     return gap_of(base, faults, 0, ran_all(base, faults, setup, commands), commands, setup)
 

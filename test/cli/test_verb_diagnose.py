@@ -82,6 +82,8 @@ def test_withheld_on_the_command_line(bag, tmp_path, capsys):
         (['BAG', *BODY, '--out', 'x', '--withhold', 'gravity@pulley_9'], 'pulley_9'),
         (['BAG', *BODY, '--out', 'x', '--jobs', '0'], '--jobs 0'),
         (['BAG', *BODY, '--out', 'x', '--jobs', 'many'], 'many'),
+        (['BAG', *BODY, '--out', 'x', '--minutes', '-1'], '--minutes -1'),
+        (['BAG', *BODY, '--out', 'x', '--minutes', 'nan'], '--minutes nan'),
         (['BAG', *BODY], '--out'),
         (['BAG', *BODY, '--out', 'a_file/x'], 'a_file'),
         ([*BODY, '--out', 'x'], 'BAG'),

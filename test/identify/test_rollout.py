@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.rollout import loosest, ROUGHER
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -224,3 +225,19 @@ def test_threads_change_no_derivative(bench, measured_on):
     fits = [problem.fitted(problem.empty, rounds=2) for problem in (alone, together)]
     assert np.array_equal(fits[0].slope, fits[1].slope)
     assert fits[0].cost == fits[1].cost
+
+
+def test_rollouts_are_rougher_where_laws_leave_more_than_noise(bench, sound_run):
+    fine = prepared([sound_run], bench)
+    assert fine.problem.rollouts.tolerance < ROUGHER[0]
+    # where models leave far more than the noise, rollouts are good enough that were not before
+    doubted = [
+        replace(s, measured=tuple(replace(m, misfit=1e3 * np.median(m.noise)) for m in s.measured))
+        for s in fine.whole.rollouts.segments
+    ]
+    assert loosest(bench, doubted) == ROUGHER[0]
+    assert fine.problem.rougher().rollouts.tolerance == ROUGHER[0]
+    left, rough = fine.problem.left(fine.problem.empty), fine.problem.rougher()
+    for mask, same in zip(rough.masks, fine.problem.masks, strict=True):
+        np.testing.assert_array_equal(mask, same)
+    assert 0.0 < np.sqrt(np.mean((rough.left(rough.empty) - left) ** 2)) < 0.5
