@@ -5,6 +5,8 @@ The rigs: what their instrument files say, and the same as tables for the genera
 damping, cable curve, pretension and gains; its file is written beside the cases. ``axis`` is one
 body on a motor and has no cable; its inertia and damping are guessed. ``arm`` is a weight on a
 servo: its weight alone is known well, and 100 Hz and 4096 counts are all that it reports.
+``guessed`` is the ``other`` rig with nothing measured but its geometry and the shape of its
+cable's curve.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from tendon_ros.blind.rig import FloatArray, Rig
 from tendon_ros.model.instrument import Controller, Curve, EffectUse, Instrument
 from tendon_ros.model.instrument_file import load_instrument
 
-BENCHES = ('bench', 'other', 'axis', 'arm')
+BENCHES = ('bench', 'other', 'axis', 'arm', 'guessed')
 PULLEYS = ('M', 'L', '1', '2', '3')
 LOOPS = ('m1', '12', 'L3')
 MOTORS = ('M', 'L')
@@ -51,6 +53,8 @@ def nominal(bench: str) -> Instrument:
         return _axis(load_instrument('bench_rig'))
     if bench == 'arm':
         return _arm(_axis(load_instrument('bench_rig')))
+    if bench == 'guessed':
+        return _guessed(_other(load_instrument('bench_rig')))
     raise InstrumentError(f'{bench}: no such bench; there are {listed(BENCHES)}')
 
 
@@ -147,6 +151,20 @@ def _arm(axis: Instrument) -> Instrument:
             'pulley_M.gravity.torque': 0.05,
             'pulley_M.gravity.phase': math.radians(1.0),
         },
+    )
+
+
+def _guessed(other: Instrument) -> Instrument:
+    """Return a rig that nobody has weighed, and whose cables nobody has pulled."""
+    of_bodies = [f'pulley_{p.name}.{of}' for p in other.pulleys for of in ('inertia', 'damping')]
+    of_cables = [
+        f'cable_{loop.name}.{of}' for loop in other.loops for of in ('stiffness', 'pretension')
+    ]
+    return replace(
+        other,
+        name='guessed_rig',
+        description='radii and the shape of the curve are known, all else is guessed',
+        tolerances=dict.fromkeys((*of_bodies, *of_cables), math.inf),
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.base.recording import Recording
 from tendon_ros.blind import columns as k
-from tendon_ros.blind.bench import MOTORS, nominal, nominal_rig, PULLEYS
+from tendon_ros.blind.bench import LOOPS, MOTORS, nominal, nominal_rig, PULLEYS
 from tendon_ros.blind.faults import chosen, Fault, renewed, rig_with
 from tendon_ros.blind.gap import gap_of, Ran
 from tendon_ros.blind.laws import KIN
@@ -41,6 +41,8 @@ _COLUMNS = {
     'inertia': k.INERTIA,
     'damping': k.DAMPING,
     'torque_gain': k.GAIN,
+    'stiffness': k.STIFFNESS,
+    'pretension': k.PRELOAD,
     'gravity.torque': k.WEIGHT,
     'gravity.phase': k.WEIGHT_PHASE,
 }
@@ -154,7 +156,13 @@ def _misjudge(rig: Rig, instrument: Instrument, rng: np.random.Generator) -> Non
     for name, tolerance in instrument.tolerances.items():
         place, quantity = name.split('.', 1)
         kind, _, of = place.partition('_')
-        row = rig.motors[MOTORS.index(of)] if kind == 'motor' else rig.pulleys[PULLEYS.index(of)]
+        tables = {
+            'motor': (rig.motors, MOTORS),
+            'pulley': (rig.pulleys, PULLEYS),
+            'cable': (rig.loops, LOOPS),
+        }
+        table, names = tables[kind]
+        row = table[names.index(of)]
         if math.isinf(tolerance):
             row[_COLUMNS[quantity]] *= _GUESS ** rng.uniform(-1.0, 1.0)
         elif quantity.endswith('.phase'):

@@ -84,6 +84,15 @@ ARM_LAWS: tuple[Law, ...] = (
     Law('tension_friction', _M, 0.05, 0.6, pulley.tension),
 )
 
+#: the same of the benches where inertias, dampings and cables are guessed: those, and what cannot
+#: be told from them, are no faults
+GUESSED_LAWS: tuple[Law, ...] = tuple(
+    law
+    for law in LAWS
+    if law.effect
+    not in {'inertia', 'viscous_friction', 'pretension', 'cable_stiffness', 'torque_gain'}
+)
+
 _DRY = ('coulomb_friction', 'stribeck_friction', 'presliding_friction', 'asymmetric_friction')
 _CONSTANT = ('torque_bias', 'gravity', 'joint_spring', 'disturbance')
 _SHIFT = ('encoder_offset', 'contact_position', 'cable_slip')

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tendon_ros.blind.law import Law
-from tendon_ros.blind.laws import ARM_LAWS, AXIS_LAWS, LAWS
+from tendon_ros.blind.laws import ARM_LAWS, AXIS_LAWS, GUESSED_LAWS, LAWS
 from tendon_ros.blind.motion import AXIS_KINDS, KINDS
 from tendon_ros.blind.sensing import CHANNEL_SETS, Sampling
 from tendon_ros.blind.unknowns import AXIS_UNKNOWNS, UNKNOWNS
@@ -33,7 +33,14 @@ _AXIS = _Repertoire(AXIS_KINDS, (), ('motor',), AXIS_LAWS, AXIS_UNKNOWNS, Sampli
 _ARM = _Repertoire(
     AXIS_KINDS, (), ('motor',), ARM_LAWS, AXIS_UNKNOWNS, Sampling(every=10, late=2, lost=0.01)
 )
-_REPERTOIRES = {'bench': _BENCH, 'other': _BENCH, 'axis': _AXIS, 'arm': _ARM}
+_GUESSED = replace(_BENCH, laws=GUESSED_LAWS)
+_REPERTOIRES = {
+    'bench': _BENCH,
+    'other': _BENCH,
+    'axis': _AXIS,
+    'arm': _ARM,
+    'guessed': _GUESSED,
+}
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument('--out', type=Path, required=True, metavar='DIR')
     make.add_argument('--seed', type=int, required=True, help='below 1000: for development')
     make.add_argument('--cases', type=int, required=True, metavar='K')
-    make.add_argument('--bench', choices=('bench', 'other', 'axis', 'arm'), default='bench')
+    make.add_argument(
+        '--bench', choices=('bench', 'other', 'axis', 'arm', 'guessed'), default='bench'
+    )
     make.add_argument('--strata', nargs='+', metavar='NAME', help='to take in turn')
     make.add_argument(
         '--channels', nargs='+', metavar='SET', help='motor, force, joint; of an axis motor'

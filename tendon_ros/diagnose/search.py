@@ -187,9 +187,11 @@ class Search:
 
     def _of_a_machine(self, found: Found) -> bool:
         """Return whether guesses had far to go, and more stays than laws can be wrong by."""
-        return far_off(self.problem, found.start) and beyond_laws(
-            self.problem, found.start, found.final
-        )
+        if not far_off(self.problem, found.start):
+            return False
+        # where channels weigh by what stays of them, that has been seen before
+        beyond = beyond_laws(self.problem, found.start, found.final)
+        return self.problem.by_misfit or beyond
 
     def _from_the_file(self, found: Found, known: Model | None = None) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
