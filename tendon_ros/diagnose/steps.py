@@ -34,8 +34,9 @@ CLEAR = 10.0
 FIRST_ORDER_SEES = 0.4
 #: the same of the effect in question at other places
 KIN_SEEN = 0.1
-#: part of the cost of numbers fitted from the file's own that others, far from them, must leave
-FARTHER = 0.8
+#: part of what numbers fitted from the file's own leave beyond noise that others, far from them,
+#: may leave; and how many of these are fitted to their end
+FARTHER, ENDED = 0.8, 2
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -185,7 +186,11 @@ class Steps:
         """
         near = self.settled(self.problem.empty)
         far = self.from_afar(self.problem.empty)
-        return near if far is None or far.cost > FARTHER * near.cost else far
+        if far is None:
+            return near
+        # what neighbouring bins share is what a better place would take away
+        shared = self.problem.structured(near.left) * len(near.left)
+        return far if near.cost - far.cost > (1.0 - FARTHER) * shared else near
 
     def from_afar(self, model: Model) -> Fit | None:
         """
@@ -198,7 +203,9 @@ class Steps:
         if not begun:
             return None
         rough = self.pool.map(lambda m: self.problem.fitted(m, rounds=12, accuracy=1e-2), begun)
-        return self.settled(min(rough, key=lambda fit: fit.cost).model)
+        best = sorted(rough, key=lambda fit: fit.cost)[:ENDED]
+        ended = self.pool.map(lambda fit: self.settled(fit.model), best)
+        return min(ended, key=lambda fit: fit.cost)
 
     def pruned(self, start: Fit, state: Fit) -> Fit:
         """

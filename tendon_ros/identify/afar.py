@@ -3,7 +3,9 @@ Where fits of guessed numbers begin: from afar.
 
 Driven by torques, a model swings as its numbers say, and a fit from a guess far off ends in a
 valley nearby: with another period nothing fits at all. What a guess may be is therefore looked
-over coarsely first, all numbers of a kind by one factor.
+over coarsely first, all numbers of a kind by one factor. Driven by motion, bodies behind cables
+leave several valleys too, in which one cable is stiff where another is soft: there each number is
+looked over by itself.
 """
 
 from __future__ import annotations
@@ -21,8 +23,10 @@ from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
 
-#: times as much, or as little, as a guess may be; combinations that are tried, and that are kept
-FAR, TRIED, KEPT = 20.0, 256, 4
+#: times as much, or as little, as a guess may be: of all of a kind, and of each by itself
+FAR, EACH = 20.0, 3.0
+#: combinations that are tried, and that are kept
+TRIED, KEPT = 256, 6
 
 
 def afar(problem: Problem, model: Model) -> list[Model]:
@@ -31,29 +35,42 @@ def afar(problem: Problem, model: Model) -> list[Model]:
 
     :param problem: the data.
     :param model: what holds.
-    :return: the same with guesses moved, what leaves least first; none where motions are known
+    :return: the same with guesses moved, what leaves least first; none where all motions are known
         (what is left is then nearly linear in the guesses), or nothing is guessed.
     """
-    movable = [t.guessed and not t.given for t in problem.tolerances]
-    kinds = sorted({t.quantity for t, far in zip(problem.tolerances, movable, strict=True) if far})
-    if not kinds or not any(d.by_torque for d in drives(problem.rollouts.instrument)):
+    instrument = problem.rollouts.instrument
+    by_torque = any(d.by_torque for d in drives(instrument))
+    if not by_torque and not instrument.inner:
         return []
-    reach = np.log(FAR)
-    points = reach * (2.0 * qmc.Halton(len(kinds), scramble=False).random(TRIED) - 1.0)
+    # which number of a point moves which tolerance
+    names = {
+        n: t.quantity if by_torque else f'{t.place}.{t.quantity}'
+        for n, t in enumerate(problem.tolerances)
+        if t.guessed and not t.given
+    }
+    kinds = sorted(set(names.values()))
+    if not kinds:
+        return []
+    reach = np.log(FAR if by_torque else EACH)
+    if by_torque:
+        points = qmc.Halton(len(kinds), scramble=False).random(TRIED)
+    else:  # in many dimensions that sequence walks along diagonals
+        points = np.random.default_rng(0).random((TRIED, len(kinds)))
 
     def moved(point: FloatArray) -> Model:
-        factors = dict(zip(kinds, np.exp(point).tolist(), strict=True))
-        places = [
-            _place(t.axis, factors[t.quantity]) if far else float(z)
-            for t, far, z in zip(problem.tolerances, movable, model.moved, strict=True)
-        ]
-        return replace(model, moved=np.array(places, dtype=np.float64))
+        factors = dict(zip(kinds, np.exp(reach * (2.0 * point - 1.0)).tolist(), strict=True))
+        places = model.moved.copy()
+        for n, name in names.items():
+            places[n] = _place(problem.tolerances[n].axis, factors[name])
+        return replace(model, moved=places)
 
     models = [moved(point) for point in points]
-    costs = []
-    for one in models:
-        left = problem.left(one)
-        costs.append(float(left @ left))
+
+    def cost(n: int) -> FloatArray:
+        left = problem.left(models[n])
+        return np.array(left @ left)
+
+    costs = np.array(problem.rollouts.each(cost, range(TRIED)))
     best = np.argsort(costs, kind='stable')[:KEPT].tolist()
     return [models[k] for k in best if np.isfinite(costs[k])]
 
