@@ -21,7 +21,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.undoing import undoing
+from tendon_ros.diagnose.undoing import absorbed, undoing
 from tendon_ros.identify.explanation import Model
 
 FloatArray = NDArray[np.float64]
@@ -73,7 +73,8 @@ def belief(ready: Prepared, found: Found) -> Belief:
     """
     causes = found.final.model.causes
     ahead = early(ready.problem, found.final.model)
-    undone = undoing(ready.problem, found.final) | (ahead.late if ahead else frozenset())
+    undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
+    undone |= ahead.late if ahead else frozenset()
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
     able = [k for k in range(len(causes)) if k not in undone]

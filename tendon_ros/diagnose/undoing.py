@@ -7,6 +7,10 @@ missed badly when it alone is left out, and none of them is there.
 
 A sensor of another gain, for one, is imitated by all that pushes and all other sensors having that
 gain: in every other channel nothing is left of several large effects.
+
+Guessed numbers of the file undo causes as well. On a weight of unknown inertia whose torque is in
+unknown units an encoder of three times the gain changes next to nothing, but how the weight's
+torque bends; whatever bends it is not an encoder for that.
 """
 
 from __future__ import annotations
@@ -31,6 +35,8 @@ UNDONE = 5.0
 HUSHED = 20.0
 #: causes from which on it is no chance that nothing is left of them in a channel
 CONSPIRING = 3
+#: part of what a cause does, as an amplitude, that guessed numbers cannot do as well
+ITS_OWN = 0.1
 
 
 def undoing(problem: Problem, state: Fit) -> frozenset[int]:
@@ -53,6 +59,30 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
         among = changes * alike[:, None]
         found |= undone(among) | conspiring([among[:, samples] for samples in channels])
     return found
+
+
+def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
+    """
+    Return the causes of a state that guessed numbers of the file mostly undo.
+
+    :param problem: the data.
+    :param state: with causes.
+    :return: which causes.
+    """
+    guessed = np.array([t.guessed for t in problem.tolerances], dtype=np.bool_)
+    if not guessed.any():
+        return frozenset()
+    columns = state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed)
+    slope = state.slope[:, columns]
+    normal = slope.T @ slope + np.diag(problem.prior(state.model)[columns] + 1e-9)
+    found = set()
+    for k, cause in enumerate(state.model.causes):
+        whole = change(problem, state, k)
+        own = whole - slope @ np.linalg.solve(normal, slope.T @ whole)
+        # what happens once is no number's doing
+        if not cause.instants and own @ own < ITS_OWN**2 * (whole @ whole):
+            found.add(k)
+    return frozenset(found)
 
 
 def undone(changes: FloatArray) -> frozenset[int]:

@@ -34,7 +34,7 @@ TOLERANCE = 4e-6
 ROUGHER = (1e-4, 2e-5)
 #: part of what the right model may be off that this may change of the file's. Dry friction makes
 #: it some five times more, and derivatives are taken from changes of a tenth
-UNNOTICED = 3e-3
+UNNOTICED = 4e-3
 WHOLE = 1e-6  # part of a bin that no delay is told by
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen

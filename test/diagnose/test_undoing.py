@@ -6,12 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.naming import NAMED
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.undoing import conspiring, undoing, undone
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.undoing import absorbed, conspiring, undoing, undone
 from tendon_ros.identify.candidate import Candidate
 
 WAVE = np.sin(np.linspace(0.0, 20.0, 400))
@@ -117,3 +120,35 @@ def test_what_stays_is_what_the_others_leave_without_them(imitated):
     for weighed in belief(ready, found).weighed:
         assert min(means) < weighed.signs.left < max(means)
         assert weighed.signs.left < 0.1 * ready.problem.structured(found.final.left)
+
+
+@pytest.mark.parametrize(
+    ('own', 'guessed', 'rows'),
+    [(0.05, True, {0}), (0.05, False, set()), (0.3, True, set()), (1.0, True, set())],
+)
+def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, rows):
+    gain = Candidate('encoder_gain', 'encoder_M')
+    model = SimpleNamespace(causes=(gain,))
+    problem = SimpleNamespace(
+        tolerances=(SimpleNamespace(guessed=guessed),),
+        prior=lambda _model: np.array([0.0, 1e-3]),
+        pack=lambda _model: np.array([0.7, 0.2]),
+    )
+    # the gain does what the number does, and a part of its own
+    state = SimpleNamespace(model=model, slope=np.column_stack([WAVE + own * OTHER, 5.0 * WAVE]))
+    assert absorbed(problem, state) == rows
+
+
+def test_an_encoder_is_no_cause_where_only_the_bend_of_a_weight_tells_of_it():
+    # a spring that grows with the third power, and a gain of three would bend the weight as much
+    case = made(607, 36, Settings(bench='arm', channels=('motor',)))
+    assert [e['effect'] for e in case.label['effects']] == ['unknown_cubic_spring']
+    ready = prepared(list(case.recordings.values()), case.instrument)
+    gain = Candidate('encoder_gain', 'encoder_M')
+    steps = Steps(ready.problem, [gain], 1, lambda *_: None, Patience())
+    start = steps.started()
+    state = steps.settled(start.model.joined(gain, {'gain': 2.0}))
+    assert state.cost < start.cost - 0.3 * len(start.left)
+    found = Found([start, state], [[]], [start])
+    assert absorbed(ready.problem, state) == {0}
+    assert belief(ready, found).weighed[0].chance < NAMED

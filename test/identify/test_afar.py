@@ -9,6 +9,7 @@ import pytest
 from tendon_ros.bags.importing import import_runs
 from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.base.resources import config_path
+from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.afar import afar, FAR, KEPT
 from tendon_ros.identify.candidate import Candidate
@@ -76,3 +77,14 @@ def test_what_is_worst_is_not_kept(problem, rectified):
 
 def test_where_motions_are_known_fits_begin_with_the_file(sound_problem):
     assert afar(sound_problem, sound_problem.empty) == []
+
+
+def test_bodies_behind_cables_are_found_from_afar_alone():
+    # every inertia, damping, stiffness and preload is up to two times off
+    case = made(608, 1, Settings(bench='guessed', channels=('force',)))
+    assert case.label['stratum'] == 'none'
+    problem = prepared(list(case.recordings.values()), case.instrument).problem
+    nearby = problem.fitted(problem.empty, rounds=20, accuracy=1e-3)
+    begun = [problem.fitted(m, rounds=20, accuracy=1e-3) for m in afar(problem, problem.empty)]
+    assert power(problem, nearby) > 2.0
+    assert min(power(problem, fit) for fit in begun) < 1.1
