@@ -42,6 +42,7 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST, MANY = 10, 5
 AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
+SETTLED = 1.0  # noise power a sample, below which guesses leave too little to ask for many causes
 #: part of the cost that a challenge may leave for another look where much is left, and the same
 #: causes for it to be another state
 GAINED = 0.8
@@ -211,6 +212,9 @@ class Search:
     def _of_many(self, found: Found, known: Model | None = None) -> Fit | None:
         """Return what is needed of what is known and usually there, if guesses ask for it."""
         if not far_off(self.problem, found.start):
+            return None
+        # guesses that have explained nearly all have little to come back for
+        if self.problem.structured(found.start.left) < SETTLED:
             return None
         fit = thinned_out(self._steps, found.start, MOST, known)
         # where it leaves much, it is something else that is behind it
