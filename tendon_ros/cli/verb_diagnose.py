@@ -7,7 +7,6 @@ from pathlib import Path
 
 from tendon_ros.cli.arguments import takes_bags
 
-MINUTES = 10.0  # most diagnoses take one; guesses of many bodies, and loops that shake, take more
 HELP = 'say where the gap between recordings and model lies, and which effect causes it'
 
 
@@ -35,10 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--minutes',
         type=float,
-        default=MINUTES,
         metavar='M',
-        help='after which no more causes are looked for, and what was found is judged; 0 for no '
-        'limit; default: %(default)g',
+        help='after which no more causes are looked for, and what was found is judged; '
+        '0: no limit; default: 10',
     )
 
 
@@ -55,6 +53,7 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import told
     from tendon_ros.diagnose.memory import Memory
+    from tendon_ros.diagnose.patience import USUAL
     from tendon_ros.diagnose.session import diagnose
     from tendon_ros.identify.candidate import check_withheld
     from tendon_ros.model.instrument_file import load_instrument, save_instrument
@@ -65,7 +64,7 @@ def run(args: argparse.Namespace) -> None:
     jobs = args.jobs if args.jobs is not None else os.cpu_count() or 1
     if jobs < 1:
         raise RecordingError(f'--jobs {jobs}: give at least 1')
-    if not args.minutes >= 0.0:
+    if args.minutes is not None and not args.minutes >= 0.0:
         raise RecordingError(f'--minutes {args.minutes:g}: give a time, or 0 for no limit')
     instrument = load_instrument(args.instrument)
     check_withheld(instrument, args.withhold)
@@ -81,7 +80,7 @@ def run(args: argparse.Namespace) -> None:
             jobs=jobs,
             report=report,
             memory=memory,
-            seconds=60.0 * args.minutes or math.inf,
+            seconds=USUAL if args.minutes is None else 60.0 * args.minutes or math.inf,
         )
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')

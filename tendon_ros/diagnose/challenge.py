@@ -25,7 +25,8 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Screen, Seen
 
-CLOSE = 6  # rivals that are fitted as carefully as the cause itself
+#: rivals that are fitted as carefully as the cause itself, and where only far better ones matter
+CLOSE, BRIEFLY = 6, 2
 REPLACED = 6  # causes at most that challenges replace
 BETTER = 0.99  # part of the cost that what is no simpler must leave
 CREEPING = 20  # rounds at most in which a fit comes to its end
@@ -139,7 +140,7 @@ class Challenge:
             among = [c for c in self._steps.candidates if of_one_body(instrument, one, c)]
             proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
             rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
-            rivals = self._sharpened(found, smaller, rivals)
+            rivals = self._sharpened(found, smaller, rivals, CLOSE)
             if rivals and self._as_good(rivals[0].fit, state):
                 self._stood = {}
                 found.states[-1] = self._steps.settled(rivals[0].fit.model)
@@ -218,7 +219,7 @@ class Challenge:
         if not brief:
             begun = self._begun.beside_the_others(found.final, cause, without, rivals)
             rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
-        rivals = self._sharpened(found, without, rivals)
+        rivals = self._sharpened(found, without, rivals, BRIEFLY if brief else CLOSE)
         return [r for r in rivals if self._more_than_a_part(r)]
 
     def _more_than_a_part(self, rival: Rival) -> bool:
@@ -245,10 +246,12 @@ class Challenge:
         others = [s for s in found.states if cause not in s.model.causes]
         return min(others, key=lambda s: s.cost)
 
-    def _sharpened(self, found: Found, without: Fit, rivals: list[Rival]) -> list[Rival]:
-        """Fit the rivals that come near as carefully as the cause that they challenge."""
+    def _sharpened(
+        self, found: Found, without: Fit, rivals: list[Rival], most: int
+    ) -> list[Rival]:
+        """Fit most of the rivals that come near as carefully as the cause that they challenge."""
         state = found.final
-        close = close_ones(self._problem, state, without, rivals)[:CLOSE]
+        close = close_ones(self._problem, state, without, rivals)[:most]
         equal = state.cost + tie(self._problem, state) * len(state.left)
 
         here = self._problem.slopes(state)

@@ -8,6 +8,10 @@ import time
 
 from tendon_ros.identify.candidate import Candidate
 
+#: [s] that a search may take: most take one or two minutes; guesses of many bodies, and loops that
+#: shake, take more
+USUAL = 600.0
+
 
 class Patience:
     """

@@ -72,8 +72,8 @@ class Search:
         patience: Patience | None = None,
     ) -> None:
         self.problem = problem
-        self._patience = patience or Patience()
-        self._steps = Steps(problem, candidates, jobs, report, self._patience)
+        self._steps = Steps(problem, candidates, jobs, report, patience)
+        self._patience = self._steps.patience
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
         self._challenge = Challenge(self._steps, self._seen)

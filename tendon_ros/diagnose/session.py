@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-import math
 import time
 
 from tendon_ros.base.recording import Recording
@@ -29,7 +28,7 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
-from tendon_ros.diagnose.patience import Patience
+from tendon_ros.diagnose.patience import Patience, USUAL
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import Search
@@ -69,7 +68,7 @@ def diagnose(
     plan: bool = True,
     report: Report = lambda _what, _done: None,
     memory: Memory | None = None,
-    seconds: float = math.inf,
+    seconds: float = USUAL,
 ) -> Outcome:
     """
     Say where the gap between recordings and model lies, what causes it, how far it shrinks.

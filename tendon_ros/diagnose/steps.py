@@ -81,13 +81,13 @@ class Steps:
         candidates: Sequence[Candidate],
         jobs: int,
         report: Report,
-        patience: Patience,
+        patience: Patience | None = None,
     ) -> None:
         self.problem = problem
         self.candidates = tuple(candidates)
         self._allowed = {(c.effect, c.place): c for c in candidates}
         self.report = report
-        self.patience = patience
+        self.patience = patience or Patience()
         self.pool = ThreadPoolExecutor(jobs)
 
     def screened(

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose import search
 from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL
+from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import everyone
@@ -42,3 +44,22 @@ def test_only_what_is_needed_stays(measured_on):
     fit = thinned_out(steps, problem.fitted(problem.empty), 8)
     assert [(c.effect, c.place) for c in fit.model.causes] == [friction[:2]]
     assert problem.structured(fit.left) < 0.1
+
+
+def test_guesses_that_explain_all_but_noise_ask_for_no_many(measured_on, monkeypatch):
+    axis = load_instrument('driven_axis')
+    pulleys = tuple(replace(p, inertia=0.5 * p.inertia) for p in axis.pulleys)
+    asked = []
+    monkeypatch.setattr(search, 'thinned_out', lambda *_: asked.append(1))
+
+    def searched(*effects):
+        settings = (('duration', '6 s'), ('amplitude', '40 deg'))
+        run = measured_on(replace(axis, pulleys=pulleys), *effects, settings=settings)
+        problem = prepared([run], axis).problem
+        asked.clear()
+        found = search.Search(problem, everyone(axis, sorted(run.channels)), 1).run()
+        return far_off(problem, found.start), len(asked)
+
+    # the inertia has gone as far both times
+    assert searched() == (True, 0)
+    assert searched(('coulomb_friction', 'pulley_axis', {'torque': 0.05})) == (True, 1)

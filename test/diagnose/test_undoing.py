@@ -11,7 +11,6 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.naming import NAMED
-from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.undoing import absorbed, conspiring, undoing, undone
@@ -145,7 +144,7 @@ def test_an_encoder_is_no_cause_where_only_the_bend_of_a_weight_tells_of_it():
     assert [e['effect'] for e in case.label['effects']] == ['unknown_cubic_spring']
     ready = prepared(list(case.recordings.values()), case.instrument)
     gain = Candidate('encoder_gain', 'encoder_M')
-    steps = Steps(ready.problem, [gain], 1, lambda *_: None, Patience())
+    steps = Steps(ready.problem, [gain], 1, lambda *_: None)
     start = steps.started()
     state = steps.settled(start.model.joined(gain, {'gain': 2.0}))
     assert state.cost < start.cost - 0.3 * len(start.left)
