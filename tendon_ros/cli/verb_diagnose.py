@@ -35,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--minutes',
         type=float,
         metavar='M',
-        help='after which no more causes are looked for, and what was found is judged; '
-        '0: no limit; default: 10',
+        help='that it may take, about: the search for causes is cut short for that; 0: no limit; '
+        'default: 10',
     )
 
 

@@ -8,21 +8,23 @@ import time
 
 from tendon_ros.identify.candidate import Candidate
 
-#: [s] that a search may take: most take one or two minutes; guesses of many bodies, and loops that
-#: shake, take more
+#: [s] that a diagnosis may take: most take one or two minutes; guesses of many bodies, and loops
+#: that shake, take more
 USUAL = 600.0
+#: part of it that the search may: what it has found must be weighed, too
+SEARCHES = 0.6
 
 
 class Patience:
     """
-    Runs out after a time.
+    Runs out before a diagnosis has taken its time.
 
-    :param seconds: from now on; endless by default.
+    :param seconds: that the diagnosis may take from now on; endless by default.
     """
 
     def __init__(self, seconds: float = math.inf) -> None:
         self._seconds = seconds
-        self._until = time.monotonic() + seconds
+        self._until = time.monotonic() + SEARCHES * seconds
         self._cut = False
 
     @property
@@ -40,7 +42,8 @@ class Patience:
         """
         if not self._cut:
             return []
-        told = f'the search for causes was ended after {self._seconds / 60.0:.3g} min'
+        minutes = self._seconds / 60.0
+        told = f'the search for causes was cut short, so as to take no more than {minutes:.3g} min'
         if unmet:
             names = ', '.join(f'{c.effect} at {c.place}' for c in unmet)
             told += f', before others were tried in the place of {names}: not named for that'

@@ -102,11 +102,9 @@ class Search:
             state = self._steps.settled(model)
             found.states.append(state)
         if self._begun is not None and self._begun.causes and len(found.states) == 1:
-            # what was not worth having while others outweighed the channels that it shows in
-            anew = self.problem.by_misfit and not self._patience.over
-            earlier = self._of_many(found, self._begun) if anew else None
-            if earlier is None:
-                earlier = self._steps.pruned(found.start, self._steps.settled(self._begun))
+            earlier = self._steps.settled(self._begun)
+            if not self.problem.by_misfit:  # else it is what was needed of all that is usual
+                earlier = self._steps.pruned(found.start, earlier)
             if self._believed(found, found.start, earlier):
                 state = earlier
                 found.states.append(state)
@@ -114,14 +112,9 @@ class Search:
         challenged: Fit | None = None
         while True:
             grown: Fit | None = None
-            if (
-                turn < ROUNDS
-                and not self._patience.over
-                and (
-                    open_question(self.problem, state)
-                    or (turn == 0 and _promising(state, proposals))
-                )
-            ):
+            asks = open_question(self.problem, state)
+            asks |= turn == 0 and bool(_promising(state, proposals))
+            if asks and turn < ROUNDS and not self._ends(state):
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:
                     screen = Screen(self.problem, state, self._seen)
@@ -180,6 +173,16 @@ class Search:
                 ]
         believed = [fit for fit in fits if fit and self._believed(found, found.start, fit)]
         return better(self.problem, *believed)
+
+    def _ends(self, state: Fit) -> bool:
+        """
+        Return whether no more causes are looked for: there is no time, or no end.
+
+        Where channels weigh by what stays of them, and many causes are needed already, whatever
+        comes next fits what laws get wrong: nothing that no fit has seen is foretold better.
+        """
+        many = self.problem.by_misfit and len(state.model.causes) > MANY
+        return many or self._patience.over
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""

@@ -80,7 +80,7 @@ def diagnose(
     :param plan: whether to look for the next experiment.
     :param report: called with what is being done and the part that is done, 0 to 1.
     :param memory: keeps the steps, so that an interrupted run goes on.
-    :param seconds: after which the search begins nothing more and what it has is judged.
+    :param seconds: that it may take, about: the search is cut short for that.
     :return: the outcome.
     :raises RecordingError: on recordings that cannot be diagnosed.
     """
