@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     make.add_argument('--strata', nargs='+', metavar='NAME', help='to take in turn')
     make.add_argument(
-        '--channels', nargs='+', metavar='SET', help='motor, force, joint; of an axis motor'
+        '--channels', nargs='+', metavar='SET', help='motor, force, joint; of axis and arm motor'
     )
     make.add_argument('--nuisance', type=float, default=0.01, help='one sigma, relative')
     make.add_argument('--jobs', type=int, default=1, help='processes')
