@@ -139,7 +139,7 @@ def _rest(diagnosis: Diagnosis) -> list[str]:
     likely = rest.probability >= 0.5
     at = f', {likely_at(rest.where)}' if rest.where and likely else ''
     during = f' ({rest.regime})' if rest.regime and likely else ''
-    return [f'{percent(rest.probability)} that none of the known effects is behind it{at}{during}']
+    return [f'{percent(rest.probability)} that something not named is behind it{at}{during}']
 
 
 def _next(do: str, add_channel: str) -> str:
