@@ -11,6 +11,7 @@ cable's curve.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 import math
@@ -45,16 +46,8 @@ def nominal(bench: str) -> Instrument:
     :return: the instrument.
     :raises InstrumentError: for any other name.
     """
-    if bench == 'bench':
-        return load_instrument('bench_rig')
-    if bench == 'other':
-        return _other(load_instrument('bench_rig'))
-    if bench == 'axis':
-        return _axis(load_instrument('bench_rig'))
-    if bench == 'arm':
-        return _arm(_axis(load_instrument('bench_rig')))
-    if bench == 'guessed':
-        return _guessed(_other(load_instrument('bench_rig')))
+    if bench in _MADE:
+        return _MADE[bench](load_instrument('bench_rig'))
     raise InstrumentError(f'{bench}: no such bench; there are {listed(BENCHES)}')
 
 
@@ -166,6 +159,16 @@ def _guessed(other: Instrument) -> Instrument:
         description='radii and the shape of the curve are known, all else is guessed',
         tolerances=dict.fromkeys((*of_bodies, *of_cables), math.inf),
     )
+
+
+#: each rig from the installed one
+_MADE: dict[str, Callable[[Instrument], Instrument]] = {
+    'bench': lambda base: base,
+    'other': _other,
+    'axis': _axis,
+    'arm': lambda base: _arm(_axis(base)),
+    'guessed': lambda base: _guessed(_other(base)),
+}
 
 
 @cache

@@ -57,8 +57,7 @@ class Settings:
 
     ``bench``: the rig, one of :data:`~tendon_ros.blind.bench.BENCHES`; ``nuisance``: one standard
     deviation of the relative error of every inertia, stiffness and preload, three times that for
-    damping;
-    ``strata``, ``channels``: those to take in turn.
+    damping; ``strata``, ``channels``: those to take in turn.
     """
 
     bench: str = 'bench'
@@ -153,14 +152,14 @@ def disturbed(rig: Rig, nuisance: float, rng: np.random.Generator) -> Rig:
 
 def _misjudge(rig: Rig, instrument: Instrument, rng: np.random.Generator) -> None:
     """Let what the file guesses be something else, and what it knows so well be as far off."""
+    tables = {
+        'motor': (rig.motors, MOTORS),
+        'pulley': (rig.pulleys, PULLEYS),
+        'cable': (rig.loops, LOOPS),
+    }
     for name, tolerance in instrument.tolerances.items():
         place, quantity = name.split('.', 1)
         kind, _, of = place.partition('_')
-        tables = {
-            'motor': (rig.motors, MOTORS),
-            'pulley': (rig.pulleys, PULLEYS),
-            'cable': (rig.loops, LOOPS),
-        }
         table, names = tables[kind]
         row = table[names.index(of)]
         if math.isinf(tolerance):

@@ -108,7 +108,7 @@ class Prepared:
         ]
         rollouts = self.whole.rollouts
         tolerance = loosest(rollouts.instrument, segments)
-        again = Rollouts(rollouts.instrument, segments, rollouts.jobs, tolerance)
+        again = rollouts.like(segments, tolerance)
         return _problems(again, self.noise, self.shift, self.looser)
 
     def moved(self, shift: int) -> Prepared:

@@ -73,7 +73,6 @@ class Search:
     ) -> None:
         self.problem = problem
         self._steps = Steps(problem, candidates, jobs, report, patience)
-        self._patience = self._steps.patience
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
         self._challenge = Challenge(self._steps, self._seen)
@@ -182,7 +181,7 @@ class Search:
         comes next fits what laws get wrong: nothing that no fit has seen is foretold better.
         """
         many = self.problem.by_misfit and len(state.model.causes) > MANY
-        return many or self._patience.over
+        return many or self._steps.patience.over
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
-from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.rollout import Rollouts, ROUGHER
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse
 
@@ -65,7 +65,8 @@ class Residuals:
 
     def rougher(self) -> Self:
         """Return the same by rollouts that are as rough as any may be: for first looks."""
-        return type(self)(self.rollouts.rougher(), self.tolerances, self._used)
+        rollouts = self.rollouts.like(self._segments, ROUGHER[0])
+        return type(self)(rollouts, self.tolerances, self._used)
 
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:

@@ -89,18 +89,16 @@ class Rollouts:
             for segment in self.segments
         )
 
-    def like(self, segments: Sequence[Segment]) -> Rollouts:
+    def like(self, segments: Sequence[Segment], tolerance: float | None = None) -> Rollouts:
         """
-        Return rollouts of other segments, as accurate as these.
+        Return rollouts of other segments.
 
         :param segments: what was measured.
+        :param tolerance: of a step [rad]; as accurate as these where None.
         :return: the rollouts.
         """
-        return Rollouts(self.instrument, segments, self.jobs, self.tolerance)
-
-    def rougher(self) -> Rollouts:
-        """Return the same rollouts, as rough as any may be."""
-        return Rollouts(self.instrument, self.segments, self.jobs, ROUGHER[0])
+        accurate = self.tolerance if tolerance is None else tolerance
+        return Rollouts(self.instrument, segments, self.jobs, accurate)
 
     @cached_property
     def measured(self) -> tuple[FloatArray, ...]:
