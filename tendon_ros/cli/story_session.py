@@ -31,16 +31,11 @@ def tell(folder: Path) -> Path:
         with shown(f'recording {plan.name}') as progress:
             run = recorded(rig, plan, seed, progress)
             bags.append(write_recording(run, folder / plan.name, overwrite=True))
-    verb_diagnose.run(
-        argparse.Namespace(
-            bag=[str(bag) for bag in bags],
-            instrument=STAND,
-            out=str(folder),
-            withhold=[],
-            jobs=None,
-            namespace=None,
-        )
-    )
+    # by the command's own parser: whatever options it has, this is what a user would get
+    parser = argparse.ArgumentParser()
+    verb_diagnose.add_arguments(parser)
+    words = [*map(str, bags), '--instrument', STAND, '--out', str(folder)]
+    verb_diagnose.run(parser.parse_args(words))
     # from here on the answer is known; what was withheld may be looked at
     save_instrument(rig, folder / 'withheld.yaml')
     diagnosis = Diagnosis.model_validate_json((folder / 'diagnosis.json').read_text())
