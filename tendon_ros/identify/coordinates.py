@@ -14,9 +14,6 @@ import math
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.identify.axis import Axis, axis_of
 
-#: part of a typical size below which where a spring rests no longer matters
-LEAST = 1e-4
-
 
 class Coordinates:
     """
@@ -78,7 +75,10 @@ class Coordinates:
                 begun + self._scale * z[n]
                 for begun, n in zip(self._origin, (self._size, self._shape), strict=True)
             )
-            pair = _polar(along, across) if self._kind == 'phase' else _rest(along, across)
+            farthest = self._parameters[self._shape].high
+            pair = (
+                _polar(along, across) if self._kind == 'phase' else _rest(along, across, farthest)
+            )
             for n, value in zip((self._size, self._shape), pair, strict=True):
                 p = self._parameters[n]
                 found[p.name] = min(max(value, p.low), p.high)
@@ -101,6 +101,17 @@ class Coordinates:
             )
         return tuple(found)
 
+    def within(self, z: Sequence[float]) -> tuple[float, ...]:
+        """
+        Return the places of what places stand for: a spring that rests too far is a stiffer one.
+
+        From there a derivative tells of both its stiffness and its rest.
+
+        :param z: places on the axes.
+        :return: places.
+        """
+        return self.place(self.values(z)) if self._kind == 'rest' else tuple(z)
+
     def _parts(self, values: Mapping[str, float]) -> tuple[float, float]:
         """Return what a size and its phase, or its rest, make along and across."""
         size = values[self._parameters[self._size].name]
@@ -118,6 +129,11 @@ def _polar(along: float, across: float) -> tuple[float, float]:
     return amplitude, phase
 
 
-def _rest(stiffness: float, torque: float) -> tuple[float, float]:
-    """Return stiffness and the angle at which it is relaxed."""
-    return stiffness, torque / max(stiffness, LEAST)
+def _rest(stiffness: float, torque: float, farthest: float) -> tuple[float, float]:
+    """
+    Return stiffness and the angle at which it is relaxed.
+
+    The torque is kept where that is too far: a descent that has come there still sees both.
+    """
+    stiffness = max(stiffness, abs(torque) / farthest)
+    return stiffness, torque / stiffness if stiffness > 0.0 else 0.0

@@ -31,8 +31,8 @@ class Unknowns(Residuals):
         """Return the model with the unknowns of a vector."""
         rows = []
         at = 0
-        for row in like.z:
-            rows.append(tuple(float(z) for z in x[at : at + len(row)]))
+        for cause, row in zip(like.causes, like.z, strict=True):
+            rows.append(cause.coordinates.within([float(z) for z in x[at : at + len(row)]]))
             at += len(row)
         bristle = {key: float(z) for key, z in zip(like.bristle, x[at:], strict=False)}
         at += len(bristle)

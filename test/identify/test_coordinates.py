@@ -59,4 +59,20 @@ def test_torque_is_linear_in_the_coordinates(effect, law):
 
 def test_a_spring_is_never_negative():
     coordinates = Coordinates(find('joint_spring').parameters)
-    assert coordinates.values((-1.0, 0.3))['stiffness'] == 0.0
+    assert coordinates.values((-1.0, 0.0))['stiffness'] == 0.0
+    assert coordinates.values((-1.0, 0.3))['stiffness'] > 0.0
+
+
+def test_a_spring_that_rests_too_far_keeps_its_torque_and_a_descent_sees_it():
+    coordinates = Coordinates(find('joint_spring').parameters)
+    size = find('joint_spring').typical['stiffness']
+    for across in (0.3, 0.6, -0.6):
+        values = coordinates.values((0.01, across))
+        assert abs(values['rest']) == pytest.approx(2.0 * math.pi)
+        assert values['stiffness'] * values['rest'] == pytest.approx(size * across)
+        # from where it then is, a stiffer spring is another one
+        along, moved = coordinates.within((0.01, across))
+        assert moved == pytest.approx(across)
+        stiffer = coordinates.values((along + 0.02, across))
+        assert stiffer['stiffness'] == pytest.approx(values['stiffness'] + 0.02 * size)
+        assert abs(stiffer['rest']) < 2.0 * math.pi
