@@ -17,6 +17,8 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen
 
+#: rounds and accuracy of fits: only careful ones tell whether there is more to an effect
+CAREFUL, BRIEF = (20, 1e-3), (6, 1e-2)
 BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
 
 
@@ -31,7 +33,9 @@ class Begun:
         self._steps = steps
         self._problem = steps.problem
 
-    def wider(self, state: Fit, cause: Candidate, proposals: Sequence[Proposal]) -> list[Rival]:
+    def wider(
+        self, state: Fit, cause: Candidate, proposals: Sequence[Proposal], *, brief: bool = False
+    ) -> list[Rival]:
         """
         Return the fits of effects that hold the cause's, which begin from what it found.
 
@@ -40,18 +44,16 @@ class Begun:
         :param state: with the cause.
         :param cause: which one.
         :param proposals: of others in its place.
+        :param brief: whether only fits matter that are far better.
         :return: the fits.
         """
         values = state.model.values(state.model.causes.index(cause))
-        return self._instead(
-            state,
-            cause,
-            [
-                (p.candidate, widened(p.values, p.candidate, values, cause))
-                for p in proposals
-                if is_part(cause, p.candidate)
-            ],
-        )
+        begun = [
+            (p.candidate, widened(p.values, p.candidate, values, cause))
+            for p in proposals
+            if is_part(cause, p.candidate)
+        ]
+        return self._instead(state, cause, begun, *(BRIEF if brief else CAREFUL))
 
     def elsewhere(
         self, state: Fit, cause: Candidate, among: Sequence[Candidate] | None
@@ -103,14 +105,19 @@ class Begun:
         return self._instead(state, cause, [(p.candidate, p.values) for p in proposals])
 
     def _instead(
-        self, state: Fit, cause: Candidate, begun: Sequence[tuple[Candidate, dict[str, float]]]
+        self,
+        state: Fit,
+        cause: Candidate,
+        begun: Sequence[tuple[Candidate, dict[str, float]]],
+        rounds: int = CAREFUL[0],
+        accuracy: float = CAREFUL[1],
     ) -> list[Rival]:
-        """Return careful fits of candidates in the place of a cause, from where each begins."""
+        """Return fits of candidates in the place of a cause, from where each begins."""
         rest = state.model.without(state.model.causes.index(cause))
         known = self._problem.slopes(state)
 
         def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
-            # only a careful fit tells whether there is more to it
-            return Rival(begin[0], self._problem.fitted(rest.joined(*begin), known, 20, 1e-3))
+            fit = self._problem.fitted(rest.joined(*begin), known, rounds, accuracy)
+            return Rival(begin[0], fit)
 
         return [r for r in self._steps.pool.map(one, begun) if math.isfinite(r.fit.cost)]

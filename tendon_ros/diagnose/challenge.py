@@ -24,6 +24,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, UNTIMED
 from tendon_ros.identify.screening import Screen, Seen
+from tendon_ros.identify.worths import worths
 
 #: rivals that are fitted as carefully as the cause itself, and where only far better ones matter
 CLOSE, BRIEFLY = 6, 2
@@ -70,7 +71,11 @@ class Challenge:
         stood = self._stood
         found.unmet = []
         while waiting := [c for c in found.final.model.causes if c not in stood]:
-            cause = waiting[0]
+            # what is missed most comes first: there may not be time for all
+            worth = dict(
+                zip(found.final.model.causes, worths(self._problem, found.final), strict=True)
+            )
+            cause = max(waiting, key=worth.__getitem__)
             if self._steps.patience.over:
                 found.unmet.append(cause)
                 stood[cause] = self._without(found, found.final.model.causes.index(cause)), []
@@ -81,7 +86,9 @@ class Challenge:
             state = found.final
             without = self._without(found, state.model.causes.index(cause))
             rivals = self._challengers(found, cause, without, brief)
-            better = self._better(found, cause, without, rivals) if replaced < REPLACED else None
+            better = None
+            if replaced < REPLACED:
+                better = self._better(found, cause, without, rivals, brief)
             near = halfway(state, without, rivals)
             if better is None:
                 stood[cause] = without, rivals
@@ -212,7 +219,7 @@ class Challenge:
         # imitators of something unknown are many: among them only what ends the search counts
         brief = brief or hopeless(self._problem, found.start, found.final)
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
-        begun = self._begun.wider(found.final, cause, proposals)
+        begun = self._begun.wider(found.final, cause, proposals, brief=brief)
         if not brief:
             begun += self._begun.elsewhere(found.final, cause, among)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
@@ -269,7 +276,12 @@ class Challenge:
         return sorted([*sharp, *(r for r in rivals if r not in close)], key=judged_cost)
 
     def _better(
-        self, found: Found, cause: Candidate, without: Fit, rivals: Sequence[Rival]
+        self,
+        found: Found,
+        cause: Candidate,
+        without: Fit,
+        rivals: Sequence[Rival],
+        brief: bool,
     ) -> Fit | None:
         """Return a fit with another candidate: one that fits better, or as well and is simpler."""
         state = found.final
@@ -288,7 +300,9 @@ class Challenge:
                 trial = self._steps.settled(rival.fit.model, self._problem.slopes(state))
                 if wins(rival.candidate, trial):
                     return trial
-        for rival in close_ones(self._problem, state, without, rivals)[:2]:
+        # where no law is quite right, what is worth least still makes up for what others get wrong
+        close = [] if brief else close_ones(self._problem, state, without, rivals)
+        for rival in close[:2]:
             smaller = relieved(self._problem, rival.fit)
             if smaller is not None and self._as_good(smaller, state):
                 trial = self._steps.settled(smaller.model, self._problem.slopes(smaller))

@@ -121,9 +121,10 @@ def headline(diagnosis: Diagnosis) -> str:
         lies = f' The largest part lies at {place} ({share}).'
     if not diagnosis.causes:
         sure = ' with any certainty' if diagnosis.beside else ''
-        return (
-            f'Nothing in the catalogue explains the gap of {before} noise deviations{sure}.{lies}'
-        )
+        nothing = f'Nothing in the catalogue explains the gap of {before} noise deviations{sure}.'
+        if diagnosis.beside and after != before:
+            nothing += f' What acts like {_likenesses(diagnosis.beside)} shrinks it to {after}.'
+        return nothing + lies
     named = _named(diagnosis.causes)
     does = 'explains' if len(diagnosis.causes) == 1 else 'explain'
     if diagnosis.verdict == 'unexplained':
@@ -171,6 +172,19 @@ def _named(causes: tuple[Cause, ...]) -> str:
     if len(causes) > _NAMED:
         return f'{count(len(causes), "effect")}, first of all {joined(said)}'
     return joined(said)
+
+
+def _likenesses(causes: tuple[Cause, ...]) -> str:
+    """Return what effects that may stand in for something are like: dry frictions are one."""
+    said = [
+        f'friction on {place_words(cause.place)}'
+        if find(cause.effect).hook == 'budget'
+        else inside(effect_words(cause.effect, cause.place))
+        for cause in causes
+    ]
+    names = [*dict.fromkeys(said)]
+    more = len(names) - _NAMED
+    return joined([*names[:_NAMED], f'{count(more, "effect")} more'] if more > 0 else names)
 
 
 def _cause(cause: Cause) -> str:
