@@ -15,6 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.bent import is_constant
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
@@ -120,6 +121,7 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     cause = found.final.model.causes[k]
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))
     vague = len({c.effect for c in (cause, *equal)}) > ALIKE or cause in found.unmet
+    vague |= is_constant(ready.problem, cause, found.final.model.values(k))
     return Weighed(
         cause=cause,
         equal=equal,

@@ -8,6 +8,7 @@ wave into gravity, one push into a push and a slip.
 from __future__ import annotations
 
 from collections.abc import Mapping
+import math
 
 import numpy as np
 
@@ -32,6 +33,9 @@ AGAIN, FEW = 2.0, 4.0
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring
 YIELDS = 0.25
+#: [rad] that no joint turns, and times as far as anything turns, if that is farther: a spring that
+#: is relaxed beyond is a constant torque
+TURN, BEYOND = 2.0 * math.pi, 2.0
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -74,7 +78,45 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         travel = _travel(problem, candidate.place.removeprefix('pulley_'))
         if travel is not None and values['angle'] > YIELDS * travel:
             return True
+    if biased(problem, candidate, values) is not None:
+        return True
     return simpler(candidate, values) is not None
+
+
+def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a spring is a constant torque, which no effect on a pulley is.
+
+    :param problem: the data.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
+    if candidate.effect != 'joint_spring':
+        return False
+    angles = [np.abs(segment.motion.value) for segment in problem.rollouts.segments]
+    turned = max((float(a.max()) for a in angles if a.size), default=0.0)
+    return abs(values['rest']) > max(TURN, BEYOND * turned)
+
+
+def biased(
+    problem: Problem, candidate: Candidate, values: Mapping[str, float]
+) -> tuple[Candidate, dict[str, float]] | None:
+    """
+    Return the bias of a motor that a constant torque on its pulley is.
+
+    :param problem: the data.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: the bias with its torque; None where it is something else.
+    """
+    if not is_constant(problem, candidate, values):
+        return None
+    for motor in problem.rollouts.instrument.motors:
+        if candidate.place == f'pulley_{motor.pulley}':
+            torque = values['stiffness'] * values['rest']
+            return Candidate('torque_bias', f'motor_{motor.name}'), {'torque': torque}
+    return None
 
 
 def excuses(problem: Problem, model: Model, k: int) -> bool:

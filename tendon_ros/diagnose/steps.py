@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses
+from tendon_ros.diagnose.bent import at_once, biased, degenerate, excuses
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
@@ -257,6 +257,7 @@ class Steps:
                 model = model.without(k)
                 continue
             other = simpler(cause, values) or plain(self.problem, model, k)
+            other = other or biased(self.problem, cause, values)
             if other is None and not degenerate(self.problem, cause, values):
                 continue
             model = model.without(k)

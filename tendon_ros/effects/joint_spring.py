@@ -42,10 +42,10 @@ EFFECT = Effect(
         Parameter(
             name='rest',
             unit='rad',
-            meaning='angle at which it is relaxed',
+            meaning='angle at which it is relaxed; turns away, a constant torque',
             neutral=math.nan,
-            low=-2 * math.pi,
-            high=2 * math.pi,
+            low=-30 * math.pi,
+            high=30 * math.pi,
             typical=0.0,
             search='rest',
         ),

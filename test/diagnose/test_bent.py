@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.bent import at_once, degenerate, excuses
+from tendon_ros.diagnose.bent import at_once, biased, degenerate, excuses, is_constant
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -26,10 +26,28 @@ from tendon_ros.model.instrument_file import load_instrument
         # and friction that yields over 17 degrees of them is a spring
         ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.3}, True),
         ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.03}, False),
+        # a spring that is relaxed turns away is a bias of the motor, where there is one
+        ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 20.0}, True),
+        ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 2.0}, False),
+        ('joint_spring', 'pulley_3', {'stiffness': 0.01, 'rest': 20.0}, False),
     ],
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+def test_a_constant_torque_is_a_bias_of_the_motor_and_elsewhere_nothing_that_has_a_name(
+    sound_problem,
+):
+    far = {'stiffness': 0.01, 'rest': 20.0}
+    driven, inner = (Candidate('joint_spring', place) for place in ('pulley_M', 'pulley_3'))
+    assert biased(sound_problem, driven, far) == (
+        Candidate('torque_bias', 'motor_M'),
+        {'torque': pytest.approx(0.2)},
+    )
+    assert biased(sound_problem, inner, far) is None
+    assert is_constant(sound_problem, inner, far)
+    assert not is_constant(sound_problem, inner, {**far, 'rest': 2.0})
 
 
 @pytest.mark.parametrize(('cycles', 'bent'), [(2.5, True), (5.0, False)])
