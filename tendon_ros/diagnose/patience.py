@@ -12,7 +12,7 @@ from tendon_ros.identify.candidate import Candidate
 #: that shake, take more
 USUAL = 600.0
 #: part of it that the search may: what it has found must be weighed, too
-SEARCHES = 0.6
+SEARCHES = 0.7
 
 
 class Patience:

@@ -26,7 +26,7 @@ from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
-#: cosine of what two causes do below which they are opposed
+#: cosine of what two causes do, or a cause and guesses, below which they are opposed
 OPPOSED = -0.5
 #: times the power of what they do together that opposed causes do each alone, all added up: true
 #: ones that happen to be opposed do three times, those that imitate seven times and more
@@ -74,13 +74,17 @@ def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
         return frozenset()
     columns = state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed)
     slope = state.slope[:, columns]
+    moved = slope @ problem.pack(state.model)[columns]
     normal = slope.T @ slope + np.diag(problem.prior(state.model)[columns] + 1e-9)
     found = set()
     for k, cause in enumerate(state.model.causes):
         whole = change(problem, state, k)
         own = whole - slope @ np.linalg.solve(normal, slope.T @ whole)
+        # they could do it as well, and have gone where they undo it
+        absorbs = own @ own < ITS_OWN**2 * (whole @ whole)
+        opposes = moved @ whole < OPPOSED * np.sqrt((moved @ moved) * (whole @ whole))
         # what happens once is no number's doing
-        if not cause.instants and own @ own < ITS_OWN**2 * (whole @ whole):
+        if absorbs and opposes and not cause.instants:
             found.add(k)
     return frozenset(found)
 

@@ -122,16 +122,24 @@ def test_what_stays_is_what_the_others_leave_without_them(imitated):
 
 
 @pytest.mark.parametrize(
-    ('own', 'guessed', 'rows'),
-    [(0.05, True, {0}), (0.05, False, set()), (0.3, True, set()), (1.0, True, set())],
+    ('own', 'guessed', 'moved', 'rows'),
+    [
+        (0.05, True, -0.2, {0}),
+        (0.05, False, -0.2, set()),
+        (0.3, True, -0.2, set()),
+        (1.0, True, -0.2, set()),
+        # a number that could do it, and has not gone where it undoes it
+        (0.05, True, 0.2, set()),
+        (0.05, True, 0.0, set()),
+    ],
 )
-def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, rows):
+def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, moved, rows):
     gain = Candidate('encoder_gain', 'encoder_M')
     model = SimpleNamespace(causes=(gain,))
     problem = SimpleNamespace(
         tolerances=(SimpleNamespace(guessed=guessed),),
         prior=lambda _model: np.array([0.0, 1e-3]),
-        pack=lambda _model: np.array([0.7, 0.2]),
+        pack=lambda _model: np.array([0.7, moved]),
     )
     # the gain does what the number does, and a part of its own
     state = SimpleNamespace(model=model, slope=np.column_stack([WAVE + own * OTHER, 5.0 * WAVE]))
