@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ FloatArray = NDArray[np.float64]
 
 #: twists at which a coupling is looked at for play [rad]
 TWISTS = np.geomspace(1e-4, 1.0, 60)
+#: couplings with play of which all combinations are tried
+MOST = 4
 
 
 class Play:
@@ -30,6 +33,7 @@ class Play:
     def __init__(self, instrument: Instrument, free: Sequence[int], statics: Statics) -> None:
         self._free = list(free)
         self._ends: list[tuple[FloatArray, float]] = []
+        links: list[int] = []
         for k in range(len(instrument.loops), len(instrument.links)):
             row = instrument.routing()[k]
             if not row[self._free].any():
@@ -38,6 +42,9 @@ class Play:
             stiff = [t for t in TWISTS if statics.at(t * unit, still).loop_stiffness[k] > 0.0]
             if stiff and stiff[0] > TWISTS[0]:
                 self._ends.append((row, float(stiff[0])))
+                links.append(k)
+        # by how much each free pulley turns if one coupling twists and no other link gives
+        self._turned = np.linalg.pinv(instrument.routing()[:, self._free])[:, links]
 
     def inside(self, angle: FloatArray) -> bool:
         """
@@ -52,7 +59,7 @@ class Play:
         """
         Return the angles with each coupling that has play wound up one way, and the other.
 
-        One coupling at a time: where several are on the wrong side at once, none may help.
+        One coupling at a time; see :meth:`corners` for several on the wrong side at once.
 
         :param angle: [rad], shape (pulleys,).
         :return: twice as many angles as there are such couplings.
@@ -66,3 +73,23 @@ class Play:
                 side[self._free] += more * free / float(free @ free)
                 found.append(side)
         return found
+
+    def corners(self, angle: FloatArray) -> Iterator[FloatArray]:
+        """
+        Yield the angles with all couplings that have play wound up, each one way or the other.
+
+        A torque that reverses while it is little takes all of them to their other ends.
+
+        :param angle: [rad], shape (pulleys,).
+        :return: each combination; none where there is one coupling, or too many to try all.
+        """
+        if not 2 <= len(self._ends) <= MOST:
+            return
+        for ways in product((1.0, -1.0), repeat=len(self._ends)):
+            more = [
+                way * end - float(row @ angle)
+                for way, (row, end) in zip(ways, self._ends, strict=True)
+            ]
+            corner = angle.copy()
+            corner[self._free] += self._turned @ np.array(more)
+            yield corner

@@ -220,8 +220,9 @@ class StaticBalanceObserver(Observer):
     def _solve(self, angle: FloatArray, measurement: Measurement) -> tuple[float, FloatArray]:
         """Find free angles (in place) and force; return the force and both's covariance."""
         begun = angle.copy()
+        doubtful = DOUBTFUL**2 * len(self._weight)
         cost, force, rows, by_fixed = self._searched(angle, begun, measurement)
-        if cost > DOUBTFUL**2 * len(self._weight):  # held at the edge of slack, perhaps
+        if cost > doubtful:  # held at the edge of slack, perhaps
             across = angle.copy()
             again = self._searched(across, begun, measurement, bold=True)
             if again[0] < cost:
@@ -229,12 +230,17 @@ class StaticBalanceObserver(Observer):
                 angle[:] = across
         # where torques change with no angle: at its edge they do
         within = self._play.inside(angle)
-        if within or cost > DOUBTFUL**2 * len(self._weight):
+        if within or cost > doubtful:
             for across in self._play.sides(angle):
                 again = self._searched(across, begun, measurement)
                 if again[0] < cost + (PROMISE if within else 0.0):
                     cost, force, rows, by_fixed = again
                     angle[:] = across
+        for across in self._play.corners(angle) if cost > doubtful else ():
+            again = self._searched(across, begun, measurement, bold=True)
+            if again[0] < cost:
+                cost, force, rows, by_fixed = again
+                angle[:] = across
         orthogonal, upper = np.linalg.qr(rows)
         inverse = np.linalg.solve(upper, orthogonal.T)
         covariance = inverse @ inverse.T

@@ -310,3 +310,29 @@ def test_a_force_that_changes_sides_is_followed_through_slack():
     off = found['estimate/torque'].value - torque / 0.9
     assert np.abs(off).max() < 0.6 * (high - low)
     assert np.median(np.abs(off)) < 2e-3
+
+
+def test_a_torque_that_reverses_crosses_several_plays_at_once(monkeypatch):
+    """With one of two plays on the wrong side no angles balance the torques."""
+    plays = {'coupling_coupling': 0.013, 'coupling_hinge': 0.07}
+    tool = replace(
+        load_instrument('davinci_grasper'),
+        effects=tuple(
+            EffectUse('backlash', place, {'angle': angle, 'held': 0.0})
+            for place, angle in plays.items()
+        ),
+    )
+    channels = ('actuator/pulley_motor/position', 'actuator/pulley_motor/effort')
+    time = 0.018 * np.arange(160)
+    torque = np.where(np.sin(6.0 * time) > 0.0, 0.05, -0.02)
+    angle = 0.3 * np.abs(np.sin(3.0 * time)) - 0.5
+    values = zip(channels, (angle, torque), strict=True)
+    run = Recording('swinging', {name: Channel(name, time, value) for name, value in values})
+
+    def astray():
+        found = estimate_recording(run, build(tool, 'static_balance', channels=channels))
+        return np.mean(np.abs(found['estimate/torque'].value - torque / 0.9) > 5e-3)
+
+    assert astray() < 0.1
+    monkeypatch.setattr('tendon_ros.estimate.play.Play.corners', lambda *_: ())
+    assert astray() > 0.4
