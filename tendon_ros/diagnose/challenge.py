@@ -66,7 +66,9 @@ class Challenge:
         creeps = any(t.guessed for t in self._problem.tolerances)
         changed = bool(self._stood)
         if creeps:
-            changed |= self._converged(found)
+            before = found.final
+            found.states[-1] = self._steps.nudged(before)
+            changed |= self._converged(found) or found.final is not before
         replaced = 0
         stood = self._stood
         found.unmet = []

@@ -20,7 +20,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
-from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
+from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, SETTLED, Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import (
     beyond_laws,
@@ -42,7 +42,6 @@ from tendon_ros.identify.subset import Member, Subsets
 MOST, MANY = 10, 5
 AT_ONCE = 3  # causes that a round adds: to first order, the fourth only imitates
 ROUNDS = 6  # of looking for more causes
-SETTLED = 1.0  # noise power a sample, below which guesses leave too little to ask for many causes
 #: part of the cost that a challenge may leave for another look where much is left, and the same
 #: causes for it to be another state
 GAINED = 0.8

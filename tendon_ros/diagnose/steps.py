@@ -13,9 +13,9 @@ from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.patience import Patience
-from tendon_ros.diagnose.worth import needed, worthwhile
+from tendon_ros.diagnose.worth import needed, open_question, worthwhile
 from tendon_ros.effects import find
-from tendon_ros.identify.afar import afar
+from tendon_ros.identify.afar import afar, aside
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -37,6 +37,10 @@ KIN_SEEN = 0.1
 #: part of what numbers fitted from the file's own leave beyond noise that others, far from them,
 #: may leave; and how many of these are fitted to their end
 FARTHER, ENDED = 0.8, 2
+#: noise power a sample from which on it is more than misplaced guesses that is wrong
+SETTLED = 1.0
+#: how often guesses are moved aside, and part of the cost that has to stay for it to have helped
+NUDGES, NUDGED = 3, 0.98
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -190,7 +194,34 @@ class Steps:
             return near
         # what neighbouring bins share is what a better place would take away
         shared = self.problem.structured(near.left) * len(near.left)
-        return far if near.cost - far.cost > (1.0 - FARTHER) * shared else near
+        return self.nudged(far if near.cost - far.cost > (1.0 - FARTHER) * shared else near)
+
+    def nudged(self, state: Fit) -> Fit:
+        """
+        Return a state out of the valley in which its guesses were, if there is a deeper one.
+
+        Where one cable is too stiff another is too soft, and no small step mends both.
+
+        :param state: with all its causes.
+        :return: the better one; the same where it leaves nothing, or more than guesses are for.
+        """
+        for _ in range(NUDGES):
+            little = self.problem.structured(state.left) < SETTLED
+            begun = aside(self.problem, state.model)
+            if not (begun and little and open_question(self.problem, state)):
+                break
+            ended = self._ended(state, begun)
+            if not ended.cost < NUDGED * state.cost:
+                break
+            state = ended
+        return state
+
+    def _ended(self, state: Fit, begun: Sequence[Model]) -> Fit:
+        """Return the fit of the best of several beginnings beside a state."""
+        known = self.problem.slopes(state)
+        rough = self.pool.map(lambda m: self.problem.fitted(m, known, 6, accuracy=1e-2), begun)
+        best = min(rough, key=lambda fit: fit.cost)
+        return self.problem.fitted(best.model, rounds=12, accuracy=1e-3)
 
     def from_afar(self, model: Model) -> Fit | None:
         """

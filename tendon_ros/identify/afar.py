@@ -75,6 +75,27 @@ def afar(problem: Problem, model: Model) -> list[Model]:
     return [models[k] for k in best if np.isfinite(costs[k])]
 
 
+def aside(problem: Problem, model: Model) -> list[Model]:
+    """
+    Return a model with one of its guesses moved, each by its deviation either way.
+
+    :param problem: the data.
+    :param model: where to begin.
+    :return: two models for each guess that may move so far.
+    """
+    found = []
+    for n, t in enumerate(problem.tolerances):
+        if not t.guessed or t.given:
+            continue
+        low, high = t.axis.ends
+        for way in (-1.0, 1.0):
+            moved = model.moved.copy()
+            moved[n] += way
+            if low <= moved[n] <= high:
+                found.append(replace(model, moved=moved))
+    return found
+
+
 def _place(axis: Axis, factor: float) -> float:
     """Return the place at which a number is a factor times what the file says."""
     if axis.log:
