@@ -217,11 +217,15 @@ class Steps:
         return state
 
     def _ended(self, state: Fit, begun: Sequence[Model]) -> Fit:
-        """Return the fit of the best of several beginnings beside a state."""
+        """Return the best fit of several beginnings that do not lead back to a state."""
         known = self.problem.slopes(state)
         rough = self.pool.map(lambda m: self.problem.fitted(m, known, 6, accuracy=1e-2), begun)
-        best = min(rough, key=lambda fit: fit.cost)
-        return self.problem.fitted(best.model, rounds=12, accuracy=1e-3)
+        # what has come back leaves the very same, however far numbers are that nothing tells
+        least = (1.0 - NUDGED) * state.cost
+        away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
+        best = sorted(away, key=lambda fit: fit.cost)[:ENDED]
+        ended = self.pool.map(lambda f: self.problem.fitted(f.model, rounds=12), best)
+        return min(ended, key=lambda fit: fit.cost, default=state)
 
     def from_afar(self, model: Model) -> Fit | None:
         """

@@ -23,7 +23,7 @@ def test_it_runs_out_once_and_for_all(monkeypatch):
     patience = Patience(60.0)
     assert not patience.over
     assert patience.words([COULOMB]) == []
-    now[0] += 37.0  # six tenths of it are the search's
+    now[0] += 43.0  # seven tenths of it are the search's
     # nobody has asked since: nothing was left out
     assert patience.words([]) == []
     assert patience.over
