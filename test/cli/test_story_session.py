@@ -1,5 +1,7 @@
 """The story is told from what `tendon diagnose` leaves, which sees bags and the stand's file."""
 
+import argparse
+
 import yaml
 
 from tendon_ros.bags.reader import read_recording
@@ -28,6 +30,14 @@ def test_diagnosis_is_asked_before_anything_withheld_is_written(tmp_path, monkey
     [args] = seen
     assert args.instrument == withheld_rig.STAND
     assert args.withhold == []
+    # what the command takes by default, whatever options it has
+    parser = argparse.ArgumentParser()
+    verb_diagnose.add_arguments(parser)
+    usual = vars(parser.parse_args(['bag', '--instrument', 'file']))
+    asked = {'bag', 'instrument', 'out'}
+    assert {k: v for k, v in vars(args).items() if k not in asked} == {
+        k: v for k, v in usual.items() if k not in asked
+    }
     assert '<html' in page.read_text()
     withheld = yaml.safe_load((tmp_path / 'withheld.yaml').read_text())['effects']
     assert {'pretension', 'tension_friction', 'stribeck_friction'} <= {
