@@ -33,7 +33,7 @@ def test_diagnosis_is_asked_before_anything_withheld_is_written(tmp_path, monkey
     # what the command takes by default, whatever options it has
     parser = argparse.ArgumentParser()
     verb_diagnose.add_arguments(parser)
-    usual = vars(parser.parse_args(['bag', '--instrument', 'file']))
+    usual = vars(parser.parse_args(['bag', '--instrument', 'file', '--out', 'folder']))
     asked = {'bag', 'instrument', 'out'}
     assert {k: v for k, v in vars(args).items() if k not in asked} == {
         k: v for k, v in usual.items() if k not in asked
