@@ -67,7 +67,8 @@ class Challenge:
         changed = bool(self._stood)
         if creeps:
             before = found.final
-            found.states[-1] = self._steps.nudged(before)
+            if not brief:
+                found.states[-1] = self._steps.nudged(before)
             changed |= self._converged(found) or found.final is not before
         replaced = 0
         stood = self._stood
