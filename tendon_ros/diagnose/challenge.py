@@ -57,6 +57,7 @@ class Challenge:
         :param found: its last state, rivals and states without a cause are replaced.
         :param brief: whether only rivals matter that are far better.
         """
+        found.states[-1] = self._steps.renamed(found.final)
         # that two are one, or one is two, is a matter of words where no law is quite right
         if not brief and not self._steps.patience.over:
             self._merge(found)

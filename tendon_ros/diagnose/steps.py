@@ -250,7 +250,7 @@ class Steps:
         :param state: with all of them.
         :return: with those that are worth having.
         """
-        state = self._renamed(state)
+        state = self.renamed(state)
         model = self.parted(state)
         if model is not state.model:
             state = self.settled(model, self.problem.slopes(state))
@@ -277,13 +277,18 @@ class Steps:
                     state, rough = smaller, True
             elif rough:
                 # carefully only once several have gone; what then is doubtful is asked anew
-                state, rough = self._renamed(self.settled(state.model)), False
+                state, rough = self.renamed(self.settled(state.model)), False
                 checked.clear()
             else:
                 return state
 
-    def _renamed(self, state: Fit) -> Fit:
-        """Give causes the names that they deserve, join what is one, and drop what is none."""
+    def renamed(self, state: Fit) -> Fit:
+        """
+        Give causes the names that they deserve, join what is one, and drop what is none.
+
+        :param state: with causes that a fit may have bent.
+        :return: the same where nothing has another name, else fitted again.
+        """
         model = state.model
         taken = {(c.effect, c.place) for c in model.causes}
         for k in reversed(range(len(model.causes))):

@@ -36,6 +36,17 @@ def test_creep_that_is_over_at_once_takes_no_name_that_was_withheld(soft, candid
     assert list(steps.pruned(start, state).model.causes) == named
 
 
+def test_a_spring_that_is_relaxed_turns_away_goes_by_the_name_of_the_motors_bias(soft):
+    problem, _, _ = soft
+    spring = Candidate('joint_spring', 'pulley_M')
+    bias = Candidate('torque_bias', 'motor_M')
+    far = problem.empty.joined(spring, {'stiffness': 0.002, 'rest': 60.0})
+    steps = Steps(problem, [spring, bias], 1, lambda *_: None)
+    named = steps.renamed(problem.fitted(far, rounds=0))
+    assert named.model.causes == (bias,)
+    assert named.cost < problem.fitted(far, rounds=0).cost
+
+
 def test_a_brief_look_fits_few_and_the_right_one_among_them(soft, bench):
     problem, start, _ = soft
     steps = Steps(problem, everyone(bench, [s.channel for s in bench.sensors]), 1, lambda *_: None)
