@@ -31,6 +31,7 @@ from tendon_ros.estimate import build, estimate_recording
 from tendon_ros.identify.segment import SETTLING
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
+from tendon_ros.model.laws import modified
 
 FloatArray = NDArray[np.float64]
 
@@ -104,12 +105,19 @@ def wandered(runs: Sequence[Recording]) -> float:
 def estimated(
     run: Recording, instrument: Instrument, channels: Sequence[str], wander: float | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return errors of jaw torque [N m] and angle [rad], and errors by the stated deviation."""
+    """
+    Return errors of jaw torque [N m] and angle [rad], and errors by the stated deviation.
+
+    The torque is compared as the load cell would read it, whose zero the instrument may know.
+    """
     observer = build(instrument, 'static_balance', channels=channels, wander=wander)
     out = estimate_recording(run, observer, rate=RATE)
     time = out['estimate/torque'].time
     late = time > run.start + SETTLING
-    torque = out['estimate/torque'].value - run[LOAD].at(time)
+    numbers = modified(instrument, instrument.effects)
+    cell = [s.channel for s in instrument.sensors].index(LOAD)
+    read = numbers['sensor_gain'][cell] * out['estimate/torque'].value
+    torque = read + numbers['sensor_offset'][cell] - run[LOAD].at(time)
     angle = out[f'estimate/{JAW.removeprefix("pulley/")}'].value - run[JAW].at(time)
     stated = torque / out['estimate/torque_std'].value
     return torque[late], angle[late], stated[late]
