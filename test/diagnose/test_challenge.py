@@ -64,6 +64,37 @@ def test_a_brief_challenge_finds_who_is_far_better_with_fewer_fits(bench, measur
     assert fitted[True] < fitted[False]
 
 
+class Once:
+    """Patience that has run out after the first question."""
+
+    def __init__(self):
+        self.asked = 0
+
+    @property
+    def over(self):
+        self.asked += 1
+        return self.asked > 1
+
+
+@pytest.mark.parametrize('turned', [False, True])
+def test_where_time_is_short_what_is_missed_most_is_challenged(bench, measured_on, turned):
+    much, little = {'torque': 0.2}, {'torque': 0.04}
+    run = measured_on(
+        bench, ('coulomb_friction', 'pulley_3', much), ('coulomb_friction', 'pulley_L', little)
+    )
+    problem = prepared([run], bench).problem
+    small = Candidate('coulomb_friction', 'pulley_L')
+    both = [(COULOMB, much), (small, little)]
+    model = problem.empty
+    for cause, values in reversed(both) if turned else both:
+        model = model.joined(cause, values)
+    found = Found()
+    found.states += [problem.fitted(problem.empty), problem.fitted(model)]
+    steps = Steps(problem, [COULOMB, small, FAR], 1, lambda *_: None, Once())
+    Challenge(steps, {}).of(found, brief=True)
+    assert found.unmet == [small]
+
+
 BIASED = Candidate('torque_bias', 'motor_L')
 
 
