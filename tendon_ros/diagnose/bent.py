@@ -78,9 +78,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         travel = _travel(problem, candidate.place.removeprefix('pulley_'))
         if travel is not None and values['angle'] > YIELDS * travel:
             return True
-    if biased(problem, candidate, values) is not None:
-        return True
-    return simpler(candidate, values) is not None
+    return (simpler(candidate, values) or biased(problem, candidate, values)) is not None
 
 
 def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:

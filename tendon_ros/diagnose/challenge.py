@@ -76,10 +76,8 @@ class Challenge:
         found.unmet = []
         while waiting := [c for c in found.final.model.causes if c not in stood]:
             # what is missed most comes first: there may not be time for all
-            worth = dict(
-                zip(found.final.model.causes, worths(self._problem, found.final), strict=True)
-            )
-            cause = max(waiting, key=worth.__getitem__)
+            causes, worth = found.final.model.causes, worths(self._problem, found.final)
+            cause = max(waiting, key=lambda c: worth[causes.index(c)])
             if self._steps.patience.over:
                 found.unmet.append(cause)
                 stood[cause] = self._without(found, found.final.model.causes.index(cause)), []

@@ -210,22 +210,16 @@ class Steps:
             begun = aside(self.problem, state.model)
             if not (begun and little and open_question(self.problem, state)):
                 break
-            ended = self._ended(state, begun)
-            if not ended.cost < NUDGED * state.cost:
+            known = self.problem.slopes(state)
+            rough = self._rough(begun, known, rounds=6)
+            # what has come back leaves the very same, however far numbers are that nothing tells
+            least = (1.0 - NUDGED) * state.cost
+            away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
+            ended = self._ended(away, lambda model: self.problem.fitted(model, rounds=12))
+            if ended is None or not ended.cost < NUDGED * state.cost:
                 break
             state = ended
         return state
-
-    def _ended(self, state: Fit, begun: Sequence[Model]) -> Fit:
-        """Return the best fit of several beginnings that do not lead back to a state."""
-        known = self.problem.slopes(state)
-        rough = self.pool.map(lambda m: self.problem.fitted(m, known, 6, accuracy=1e-2), begun)
-        # what has come back leaves the very same, however far numbers are that nothing tells
-        least = (1.0 - NUDGED) * state.cost
-        away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
-        best = sorted(away, key=lambda fit: fit.cost)[:ENDED]
-        ended = self.pool.map(lambda f: self.problem.fitted(f.model, rounds=12), best)
-        return min(ended, key=lambda fit: fit.cost, default=state)
 
     def from_afar(self, model: Model) -> Fit | None:
         """
@@ -234,13 +228,23 @@ class Steps:
         :param model: causes.
         :return: the best fit; None where guesses need not be looked for from afar.
         """
-        begun = afar(self.problem, model)
-        if not begun:
-            return None
-        rough = self.pool.map(lambda m: self.problem.fitted(m, rounds=12, accuracy=1e-2), begun)
+        return self._ended(self._rough(afar(self.problem, model)), self.settled)
+
+    def _rough(
+        self,
+        begun: Sequence[Model],
+        known: Mapping[str, FloatArray] | None = None,
+        rounds: int = 12,
+    ) -> list[Fit]:
+        """Return rough fits from several beginnings."""
+        fits = self.pool.map(lambda m: self.problem.fitted(m, known, rounds, accuracy=1e-2), begun)
+        return list(fits)
+
+    def _ended(self, rough: Sequence[Fit], end: Callable[[Model], Fit]) -> Fit | None:
+        """Return the best of rough fits once they are fitted to their end; None where none is."""
         best = sorted(rough, key=lambda fit: fit.cost)[:ENDED]
-        ended = self.pool.map(lambda fit: self.settled(fit.model), best)
-        return min(ended, key=lambda fit: fit.cost)
+        ended = self.pool.map(lambda fit: end(fit.model), best)
+        return min(ended, key=lambda fit: fit.cost, default=None)
 
     def pruned(self, start: Fit, state: Fit) -> Fit:
         """

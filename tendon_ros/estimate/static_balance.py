@@ -34,6 +34,8 @@ from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
 FloatArray = NDArray[np.float64]
+#: what a search finds: cost, force, slopes by unknowns and by measured angles
+Found = tuple[float, float, FloatArray, FloatArray]
 
 #: balance of a pulley that no torque sensor sees: how exactly it must hold [N m]
 BALANCE = 1e-5
@@ -221,26 +223,26 @@ class StaticBalanceObserver(Observer):
         """Find free angles (in place) and force; return the force and both's covariance."""
         begun = angle.copy()
         doubtful = DOUBTFUL**2 * len(self._weight)
-        cost, force, rows, by_fixed = self._searched(angle, begun, measurement)
-        if cost > doubtful:  # held at the edge of slack, perhaps
-            across = angle.copy()
-            again = self._searched(across, begun, measurement, bold=True)
-            if again[0] < cost:
-                cost, force, rows, by_fixed = again
-                angle[:] = across
+
+        def better(across: FloatArray, best: Found, least: float = 0.0, *, bold: bool) -> Found:
+            again = self._searched(across, begun, measurement, bold=bold)
+            if not again[0] < best[0] + least:
+                return best
+            angle[:] = across
+            return again
+
+        best = self._searched(angle, begun, measurement)
+        if best[0] > doubtful:  # held at the edge of slack, perhaps
+            best = better(angle.copy(), best, bold=True)
         # where torques change with no angle: at its edge they do
         within = self._play.inside(angle)
-        if within or cost > doubtful:
+        if within or best[0] > doubtful:
             for across in self._play.sides(angle):
-                again = self._searched(across, begun, measurement)
-                if again[0] < cost + (PROMISE if within else 0.0):
-                    cost, force, rows, by_fixed = again
-                    angle[:] = across
-        for across in self._play.corners(angle) if cost > doubtful else ():
-            again = self._searched(across, begun, measurement, bold=True)
-            if again[0] < cost:
-                cost, force, rows, by_fixed = again
-                angle[:] = across
+                best = better(across, best, PROMISE if within else 0.0, bold=False)
+        if best[0] > doubtful:
+            for across in self._play.corners(angle):
+                best = better(across, best, bold=True)
+        cost, force, rows, by_fixed = best
         orthogonal, upper = np.linalg.qr(rows)
         inverse = np.linalg.solve(upper, orthogonal.T)
         covariance = inverse @ inverse.T
@@ -250,7 +252,7 @@ class StaticBalanceObserver(Observer):
 
     def _searched(
         self, angle: FloatArray, begun: FloatArray, measurement: Measurement, *, bold: bool = False
-    ) -> tuple[float, float, FloatArray, FloatArray]:
+    ) -> Found:
         """
         Descend from angles (in place): cost, force, slopes by unknowns and measured angles.
 
