@@ -120,7 +120,9 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     likely = chance(ready, found, k, signs)
     cause = found.final.model.causes[k]
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))
-    vague = len({c.effect for c in (cause, *equal)}) > ALIKE or cause in found.unmet
+    # beside a strong effect many differ by less than its law may be wrong by
+    as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
+    vague = len({cause.effect} | as_good) > ALIKE or cause in found.unmet
     vague |= is_constant(ready.problem, cause, found.final.model.values(k))
     return Weighed(
         cause=cause,

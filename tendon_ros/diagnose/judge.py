@@ -90,7 +90,7 @@ def probability(signs: Signs) -> float:
 LAW = 0.02
 
 
-def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
+def equals(problem: Problem, found: Found, k: int, *, by_law: bool = True) -> list[Rival]:
     """
     Return the rivals that these data cannot tell from a cause.
 
@@ -99,11 +99,14 @@ def equals(problem: Problem, found: Found, k: int) -> list[Rival]:
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
+    :param by_law: whether also those that differ by no more than laws may be wrong by.
     :return: those whose misfit is as good.
     """
     final = found.final
     samples = len(final.left)
-    allowed = tie(problem, final) + LAW * form_power(problem, found.start, final)
+    allowed = tie(problem, final)
+    if by_law:
+        allowed += LAW * form_power(problem, found.start, final)
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 

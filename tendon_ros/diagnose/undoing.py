@@ -5,6 +5,9 @@ What unrelated causes do to the channels adds up like squares. Where a fit lacks
 makes one up from large effects of opposite sign whose small difference looks like it; each is then
 missed badly when it alone is left out, and none of them is there.
 
+What is made up is off somewhere by a part of the large effects. Two that happen to be opposed, such
+as a softer contact beside an encoder that makes the tip press harder, leave nothing.
+
 A sensor of another gain, for one, is imitated by all that pushes and all other sensors having that
 gain: in every other channel nothing is left of several large effects.
 
@@ -16,6 +19,7 @@ torque bends; whatever bends it is not an encoder for that.
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +35,10 @@ OPPOSED = -0.5
 #: times the power of what they do together that opposed causes do each alone, all added up: true
 #: ones that happen to be opposed do three times, those that imitate seven times and more
 UNDONE = 5.0
-#: the same in one channel, where something else may show in others
+#: the same in one channel, where something else may show in others, and of causes that leave nothing
 HUSHED = 20.0
+#: part of what opposed causes do each, all added up, that nothing but the true ones leaves
+EXACT = 1e-5
 #: causes from which on it is no chance that nothing is left of them in a channel
 CONSPIRING = 3
 #: part of what a cause does, as an amplitude, that guessed numbers cannot do as well
@@ -55,9 +61,10 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
     channels = problem.channels().values()
     happened = np.array([bool(cause.instants) for cause in causes])
     found: frozenset[int] = frozenset()
+    stays = problem.structured(state.left) * changes.shape[1]
     for alike in (happened, ~happened):
         among = changes * alike[:, None]
-        found |= undone(among) | conspiring([among[:, samples] for samples in channels])
+        found |= undone(among, stays) | conspiring([among[:, samples] for samples in channels])
     return found
 
 
@@ -89,14 +96,22 @@ def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
     return frozenset(found)
 
 
-def undone(changes: FloatArray) -> frozenset[int]:
+def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:
     """
     Return which of several changes mostly undo each other.
 
     :param changes: what each cause does to each sample, shape (causes, samples).
-    :return: the rows of changes that are opposed to others of them, where little of them stays.
+    :param stays: what all of them leave, as a sum of squares.
+    :return: the rows of changes that are opposed to others of them, where little of them stays
+        that would be any better than they are large.
     """
-    return frozenset().union(*_undone(changes, UNDONE))
+    hushed = _undone(changes, HUSHED)
+    little = [
+        members
+        for members in _undone(changes, UNDONE)
+        if stays > EXACT * np.sum(changes[list(members)] ** 2)
+    ]
+    return frozenset().union(*hushed, *little)
 
 
 def conspiring(channels: Sequence[FloatArray]) -> frozenset[int]:

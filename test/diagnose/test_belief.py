@@ -134,6 +134,21 @@ def test_what_any_effect_does_as_well_is_not_named(found_of):
     assert 1 in vague.named
 
 
+def test_what_many_do_nearly_as_well_beside_a_strong_law_is_named(found_of, monkeypatch):
+    """Laws may be wrong by more than a noise power; a whole kind is vague only where it ties."""
+    ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
+    monkeypatch.setattr('tendon_ros.diagnose.judge.form_power', lambda *_: 100.0)
+    kinds = ('stribeck_friction', 'presliding_friction', 'asymmetric_friction', 'gravity')
+    for further, named in ((1.0, True), (0.001, False)):
+        cost = found.final.cost + further * len(found.final.left)
+        other = replace(found.final, cost=cost)
+        found.rivals[0] = [Rival(Candidate(k, 'pulley_3'), other) for k in kinds]
+        found.rivals[0].append(Rival(Candidate('joint_spring', 'pulley_3'), other))
+        judged = belief(ready, found)
+        assert len(judged.weighed[0].equal) == 5
+        assert (0 in judged.named) == named
+
+
 def test_a_preload_that_others_hide_within_their_tolerances_is_found(bench, measured_on):
     # three cables in series: each a little looser does what one much looser does
     press = {'trajectory': 'paper_fig12', 'settings': (), 'touching': True}

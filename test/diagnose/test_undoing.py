@@ -41,6 +41,21 @@ def test_little_stays_of_what_is_undone(changes, rows):
 
 
 @pytest.mark.parametrize(
+    ('shrinks', 'stays', 'rows'),
+    [
+        # a softer contact gives back what an offset presses, and the two explain to the last bit
+        (0.35, 1e-6, set()),
+        (0.35, 1e-4, {0, 1}),
+        # what is hardly there at all is no proof of anything
+        (0.2, 1e-6, {0, 1}),
+    ],
+)
+def test_opposed_causes_that_leave_nothing_are_believed(shrinks, stays, rows):
+    changes = np.array([100.0 * WAVE, shrinks * 100.0 * OTHER - 100.0 * WAVE])
+    assert undone(changes, stays * float(np.sum(changes**2))) == rows
+
+
+@pytest.mark.parametrize(
     ('channels', 'rows'),
     [
         # a cell whose gain is imitated by all that pushes it and by the gain of the motor
@@ -79,8 +94,9 @@ def test_what_happens_at_a_time_undoes_nothing_that_lasts(monkeypatch, second, w
     causes = (Candidate('encoder_offset', 'encoder_L'), second)
     changes = [WAVE, 0.2 * OTHER - WAVE]
     monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
-    state = SimpleNamespace(model=SimpleNamespace(causes=causes))
-    assert undoing(SimpleNamespace(channels=dict), state) == which
+    state = SimpleNamespace(model=SimpleNamespace(causes=causes), left=WAVE)
+    problem = SimpleNamespace(channels=dict, structured=lambda left: float(np.mean(left**2)))
+    assert undoing(problem, state) == which
 
 
 @pytest.fixture(scope='module')
