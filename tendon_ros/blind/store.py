@@ -13,7 +13,10 @@ from concurrent.futures import as_completed, ProcessPoolExecutor
 from dataclasses import asdict, replace
 import json
 import multiprocessing
+from multiprocessing.connection import wait
+import os
 from pathlib import Path
+import threading
 from typing import Any
 
 from tendon_ros.bags.reader import read_recording
@@ -178,8 +181,21 @@ def each(
             tell((done + 1) / len(arguments))
         return
     context = multiprocessing.get_context('spawn')
-    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+    with ProcessPoolExecutor(jobs, mp_context=context, initializer=_end_with_parent) as pool:
         futures = [pool.submit(task, *given) for given in arguments]
         for done, future in enumerate(as_completed(futures)):
             future.result()
             tell((done + 1) / len(arguments))
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it ends: who is killed can tell nobody."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    thread = threading.Thread(target=_await_end, args=(parent.sentinel,), daemon=True)
+    thread.start()
+
+
+def _await_end(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)

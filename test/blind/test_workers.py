@@ -1,0 +1,56 @@
+"""Processes that work on cases do not outlive the one that started them."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+MAIN = """
+import os
+from pathlib import Path
+import time
+
+from tendon_ros.blind.store import each
+
+
+def told(path):
+    Path(path).write_text(str(os.getpid()), encoding='utf-8')
+    time.sleep(600.0)
+
+
+if __name__ == '__main__':
+    each(told, [('0',), ('1',)], 2, None)
+"""
+
+
+def alive(process):
+    """Return whether a process runs; one that nobody has waited for does not."""
+    try:
+        with open(f'/proc/{process}/stat', encoding='utf-8') as file:
+            return file.read().rsplit(')', 1)[1].split()[0] != 'Z'
+    except OSError:
+        return False
+
+
+def until(happens, seconds=60.0):
+    """Return whether something happens in time."""
+    end = time.monotonic() + seconds
+    while not happens() and time.monotonic() < end:
+        time.sleep(0.05)
+    return happens()
+
+
+@pytest.mark.skipif(not os.path.isdir('/proc/self'), reason='asks the system who is alive')
+def test_who_is_killed_takes_its_workers_along(tmp_path):
+    script = tmp_path / 'main.py'
+    script.write_text(MAIN, encoding='utf-8')
+    with subprocess.Popen([sys.executable, str(script)], cwd=tmp_path) as run:
+        files = [tmp_path / name for name in '01']
+        assert until(lambda: all(f.is_file() and f.read_text() for f in files))
+        workers = [int(f.read_text()) for f in files]
+        assert all(alive(w) for w in workers)
+        run.send_signal(signal.SIGKILL)
+    assert until(lambda: not any(alive(w) for w in workers))
