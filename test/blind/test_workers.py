@@ -1,6 +1,6 @@
 """Processes that work on cases do not outlive the one that started them."""
 
-import os
+from pathlib import Path
 import signal
 import subprocess
 import sys
@@ -29,10 +29,10 @@ if __name__ == '__main__':
 def alive(process):
     """Return whether a process runs; one that nobody has waited for does not."""
     try:
-        with open(f'/proc/{process}/stat', encoding='utf-8') as file:
-            return file.read().rsplit(')', 1)[1].split()[0] != 'Z'
+        said = Path(f'/proc/{process}/stat').read_text(encoding='utf-8')
     except OSError:
         return False
+    return said.rsplit(')', 1)[1].split()[0] != 'Z'
 
 
 def until(happens, seconds=60.0):
@@ -43,7 +43,7 @@ def until(happens, seconds=60.0):
     return happens()
 
 
-@pytest.mark.skipif(not os.path.isdir('/proc/self'), reason='asks the system who is alive')
+@pytest.mark.skipif(not Path('/proc/self').is_dir(), reason='asks the system who is alive')
 def test_who_is_killed_takes_its_workers_along(tmp_path):
     script = tmp_path / 'main.py'
     script.write_text(MAIN, encoding='utf-8')
