@@ -5,8 +5,8 @@ What unrelated causes do to the channels adds up like squares. Where a fit lacks
 makes one up from large effects of opposite sign whose small difference looks like it; each is then
 missed badly when it alone is left out, and none of them is there.
 
-What is made up is off somewhere by a part of the large effects. Two that happen to be opposed, such
-as a softer contact beside an encoder that makes the tip press harder, leave nothing.
+What is made up is off somewhere by a part of the large effects. Two that happen to be opposed,
+such as a softer contact beside an encoder that makes the tip press harder, leave nothing.
 
 A sensor of another gain, for one, is imitated by all that pushes and all other sensors having that
 gain: in every other channel nothing is left of several large effects.
@@ -35,7 +35,7 @@ OPPOSED = -0.5
 #: times the power of what they do together that opposed causes do each alone, all added up: true
 #: ones that happen to be opposed do three times, those that imitate seven times and more
 UNDONE = 5.0
-#: the same in one channel, where something else may show in others, and of causes that leave nothing
+#: the same in one channel, where something else may show in others, and where nothing is left
 HUSHED = 20.0
 #: part of what opposed causes do each, all added up, that nothing but the true ones leaves
 EXACT = 1e-5
