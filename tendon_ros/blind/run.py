@@ -27,7 +27,7 @@ def run(
     jobs: int = 1,
     diagnose: str = DIAGNOSE,
     progress: Progress | None = None,
-) -> None:
+) -> dict[str, str]:
     """
     Diagnose every case that has no result yet, and write one file for each.
 
@@ -36,6 +36,7 @@ def run(
     :param jobs: processes, each with one thread for linear algebra.
     :param diagnose: what is judged, as ``module:function``.
     :param progress: called with the part that is done.
+    :return: of the cases that were not diagnosed, what was said instead.
     """
     use_one_thread()
     withheld: dict[str, list[str]] = read_json(folder / 'withhold.json')
@@ -46,6 +47,8 @@ def run(
         jobs,
         progress,
     )
+    said = {case: read_json(results / f'{case}.json') for case in case_names(folder)}
+    return {case: content['error'] for case, content in said.items() if 'error' in content}
 
 
 def _done(path: Path) -> bool:

@@ -183,9 +183,16 @@ def each(
     context = multiprocessing.get_context('spawn')
     with ProcessPoolExecutor(jobs, mp_context=context, initializer=_end_with_parent) as pool:
         futures = [pool.submit(task, *given) for given in arguments]
-        for done, future in enumerate(as_completed(futures)):
-            future.result()
-            tell((done + 1) / len(arguments))
+        try:
+            for done, future in enumerate(as_completed(futures)):
+                future.result()
+                tell((done + 1) / len(arguments))
+        except BaseException:
+            # leaving the pool waits for all that was asked for, which may take hours
+            pool.shutdown(wait=False, cancel_futures=True)
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
 
 
 def _end_with_parent() -> None:

@@ -63,7 +63,9 @@ def _run(args: argparse.Namespace) -> None:
 
     _check('--jobs', args.jobs, 1)
     with shown('diagnosing') as progress:
-        run_all(args.folder, args.out, jobs=args.jobs, progress=progress)
+        failed = run_all(args.folder, args.out, jobs=args.jobs, progress=progress)
+    for case, error in failed.items():
+        print(f'{case}: was not diagnosed: {error.strip().splitlines()[-1]}')
     print(f'{args.out}: score with `tendon blind score {args.folder} {args.out}`')
 
 

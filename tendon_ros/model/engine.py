@@ -27,9 +27,12 @@ from typing import Any
 import numpy as np
 
 from tendon_ros import __version__
-from tendon_ros.base.errors import SimulationError
+from tendon_ros.base.errors import listed, SimulationError
 from tendon_ros.model.joining import decorated_source, joined_source
 from tendon_ros.model.structure import Structure
+
+#: what an engine may be asked for
+KINDS = ('auto', 'compiled', 'plain')
 
 
 def compiler_installed() -> bool:
@@ -100,6 +103,8 @@ def engine_of(files: tuple[Path, ...], kind: str = 'auto') -> Engine:
 
 def _is_compiled(kind: str) -> bool:
     """Return whether an engine of this kind is compiled here."""
+    if kind not in KINDS:
+        raise SimulationError(f'engine: {kind!r}; give {listed(KINDS)}')
     if kind == 'compiled' and not compiler_installed():
         raise SimulationError(
             "engine 'compiled' needs numba, which is not installed: pip install numba, "

@@ -54,19 +54,20 @@ def simulate(
     Run an instrument along a trajectory, from rest where the trajectory begins.
 
     :param instrument: with the effects in force.
-    :param trajectory: of its motors.
+    :param trajectory: of all its motors, in any order.
     :param rate: recorded rows per second [Hz]; divides the controllers' rate.
     :param seed: of the sensors' noise; None leaves noise off.
     :param engine: ``auto``, ``compiled`` or ``plain``.
     :param progress: called now and then with the part that is done, 0 to 1.
     :return: what a rig would have recorded, and the inner truth besides.
-    :raises TrajectoryError: on a trajectory beyond the instrument's limits.
+    :raises TrajectoryError: on a trajectory beyond the instrument's limits, or of other motors.
     :raises SimulationError: where the simulation diverges.
     """
     check_limits(trajectory, instrument)
     period = instrument.control_period
     every = ticks_between(rate, period)
-    setpoints = trajectory.sample(period)
+    # whoever writes a trajectory by hand need not know the order of the file
+    setpoints = trajectory.ordered([m.name for m in instrument.motors]).sample(period)
     first = dict(zip(instrument.driven, setpoints[0], strict=True))
     simulation = Simulation(instrument, seed=seed, engine=engine, pose=first)
     tables = []

@@ -76,6 +76,21 @@ class Trajectory:
         """Time of the last point [s]."""
         return float(self.time[-1])
 
+    def ordered(self, motors: Sequence[str]) -> Trajectory:
+        """
+        Return the same with its columns in the order of an instrument's motors.
+
+        :param motors: names of all motors of the instrument.
+        :return: the trajectory.
+        :raises TrajectoryError: where it says nothing of a motor, or has one that is not there.
+        """
+        if set(motors) != set(self.position):
+            raise TrajectoryError(
+                f'{self.name}: has positions of {listed(self.position)}, the instrument has the '
+                f'motors {listed(motors)}; give one column for each'
+            )
+        return Trajectory(self.name, self.time, {m: self.position[m] for m in motors})
+
     def at(self, time: FloatArray | float) -> FloatArray:
         """
         Return positions at any times.

@@ -41,3 +41,12 @@ def test_a_folder_without_results_is_no_score(tmp_path, capsys):
 def test_a_folder_without_cases_is_no_run(tmp_path, capsys):
     assert main(['blind', 'run', str(tmp_path), '--out', str(tmp_path / 'r')]) == 2
     assert 'withhold.json' in capsys.readouterr().err
+
+
+def test_a_case_that_was_not_diagnosed_is_said(tmp_path, capsys):
+    make(tmp_path / 'cases', 1, 1, Settings(strata=('none',)))
+    make(tmp_path / 'axis', 1, 1, Settings('axis', strata=('none',)))
+    other = tmp_path / 'axis' / 'instrument.yaml'
+    other.rename(tmp_path / 'cases' / 'instrument.yaml')
+    assert main(['blind', 'run', str(tmp_path / 'cases'), '--out', str(tmp_path / 'said')]) == 0
+    assert 'case_0000: was not diagnosed: ' in capsys.readouterr().out

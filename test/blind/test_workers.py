@@ -22,7 +22,7 @@ def told(path):
 
 
 if __name__ == '__main__':
-    each(told, [('0',), ('1',)], 2, None)
+    each(told, [(name,) for name in '0123'], 2, None)
 """
 
 
@@ -44,7 +44,8 @@ def until(happens, seconds=60.0):
 
 
 @pytest.mark.skipif(not Path('/proc/self').is_dir(), reason='asks the system who is alive')
-def test_who_is_killed_takes_its_workers_along(tmp_path):
+@pytest.mark.parametrize('number', [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_who_is_stopped_takes_its_workers_along(number, tmp_path):
     script = tmp_path / 'main.py'
     script.write_text(MAIN, encoding='utf-8')
     with subprocess.Popen([sys.executable, str(script)], cwd=tmp_path) as run:
@@ -52,5 +53,6 @@ def test_who_is_killed_takes_its_workers_along(tmp_path):
         assert until(lambda: all(f.is_file() and f.read_text() for f in files))
         workers = [int(f.read_text()) for f in files]
         assert all(alive(w) for w in workers)
-        run.send_signal(signal.SIGKILL)
+        run.send_signal(number)
     assert until(lambda: not any(alive(w) for w in workers))
+    assert not (tmp_path / '2').exists()

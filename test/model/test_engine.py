@@ -37,6 +37,11 @@ def test_the_file_stands_alone(structure):
         assert used <= own | known, function.name
 
 
+def test_an_engine_that_does_not_exist_is_none(structure):
+    with pytest.raises(SimulationError, match="'complied'; give auto, compiled, plain"):
+        engine.engine_for(structure, 'complied')
+
+
 def test_a_changed_law_is_another_file(structure, monkeypatch, tmp_path):
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
     engine.engine_for.cache_clear()

@@ -8,6 +8,7 @@ import pytest
 
 from tendon_ros.base.errors import TrajectoryError
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory import check_limits, load_trajectory, Trajectory
 from tendon_ros.model.trajectory_choice import chosen, profiles, settings
 
@@ -212,3 +213,18 @@ def test_bad_csv_is_named(tmp_path, text, said):
         load_trajectory(file, MOTORS)
     assert str(error.value).startswith(f'{file}: ')
     assert said in str(error.value)
+
+
+def test_columns_may_have_any_order(rig):
+    time = np.linspace(0.0, 0.02, 11)
+    moves = {'L': np.zeros(11), 'M': np.linspace(0.0, -0.01, 11)}
+    there = simulate(rig, Trajectory('there', time, moves))
+    for motor, position in moves.items():
+        commanded = there[f'setpoint/pulley_{motor}/position'].value
+        assert commanded[-1] == pytest.approx(position[-1])
+
+
+def test_a_motor_without_positions_is_named(rig):
+    only = Trajectory('only', np.arange(2.0), {'M': np.zeros(2)})
+    with pytest.raises(TrajectoryError, match='has positions of M, the instrument has .* L, M'):
+        simulate(rig, only)
