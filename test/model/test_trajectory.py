@@ -226,5 +226,5 @@ def test_columns_may_have_any_order(rig):
 
 def test_a_motor_without_positions_is_named(rig):
     only = Trajectory('only', np.arange(2.0), {'M': np.zeros(2)})
-    with pytest.raises(TrajectoryError, match='has positions of M, the instrument has .* L, M'):
+    with pytest.raises(TrajectoryError, match='has positions of M, the instrument has'):
         simulate(rig, only)
