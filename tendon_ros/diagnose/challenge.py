@@ -16,7 +16,7 @@ from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
-from tendon_ros.diagnose.parts import plain
+from tendon_ros.diagnose.parts import is_part, plain
 from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
@@ -291,10 +291,15 @@ class Challenge:
         def wins(rival: Candidate, fit: Fit) -> bool:
             more = len(rival.parameters) - len(cause.parameters)
             ahead = (state.cost - fit.cost) / len(state.left)
+            bet = criterion(self._problem, fit) < criterion(self._problem, state)
+            # a law that holds another is never worse: its parameters pay for themselves, or that
+            # other one is named, and it among those that cannot be told from it
+            if is_part(rival, cause):
+                return bet
             if more < 0:
                 return self._as_good(fit, state)
             if more > 0:
-                return ahead > tie(self._problem, fit)
+                return ahead > tie(self._problem, fit) and (bet or not is_part(cause, rival))
             return fit.cost < BETTER * state.cost
 
         for rival in rivals[:2]:

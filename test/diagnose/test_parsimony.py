@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.diagnose import challenge
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import criterion
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import best_of, Steps
@@ -45,3 +45,24 @@ def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(problem, m
     Challenge(steps, {}).of(found)
     assert COULOMB in [rival.candidate for rival in found.rivals[0]]
     assert found.final.model.causes == (STRIBECK,)
+
+
+@pytest.mark.parametrize(
+    ('more', 'named'), [(0.3, Candidate('asymmetric_friction', 'pulley_3')), (0.04, COULOMB)]
+)
+def test_a_law_that_holds_another_pays_for_itself(bench, measured_on, more, named):
+    """Friction that differs by a little is a fact of these data, and none of the machine."""
+    whole = Candidate('asymmetric_friction', 'pulley_3')
+    run = measured_on(bench, (COULOMB.effect, COULOMB.place, {'torque': 0.2}))
+    problem = prepared([run], bench).problem
+    steps = Steps(problem, [COULOMB, whole], 1, lambda *_: None)
+    start = problem.fitted(problem.empty)
+    found = Found(proposals=best_of(steps.screened(Screen(problem, start))))
+    model = problem.empty.joined(whole, {'forward': 0.22, 'backward': 0.18})
+    simple = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}))
+    rich = problem.fitted(model)
+    found.states += [start, replace(rich, cost=simple.cost - more * len(rich.left))]
+    challenge = Challenge(steps, {})
+    rivals = [Rival(COULOMB, simple)]
+    better = challenge._better(found, whole, start, rivals, brief=True)
+    assert (whole if better is None else better.model.causes[0]) == named
