@@ -7,30 +7,34 @@ One cause after the other, round and round, until each has stood its ground.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
 import math
 
 from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, excuses
-from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.parsimony import criterion
+from tendon_ros.diagnose.one_body import divide, merge
+from tendon_ros.diagnose.parsimony import as_good, criterion
 from tendon_ros.diagnose.parts import is_part, plain
-from tendon_ros.diagnose.rivals import close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import (
+    BETTER,
+    CLOSE,
+    close_ones,
+    CREEPING,
+    halfway,
+    relieved,
+    sharpened,
+)
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.worth import hopeless
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit, UNTIMED
+from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen, Seen
 from tendon_ros.identify.worths import worths
 
-#: rivals that are fitted as carefully as the cause itself, and where only far better ones matter
-CLOSE, BRIEFLY = 6, 2
+#: rivals that are fitted as carefully as the cause itself where only far better ones matter
+BRIEFLY = 2
 REPLACED = 6  # causes at most that challenges replace
-BETTER = 0.99  # part of the cost that what is no simpler must leave
-CREEPING = 20  # rounds at most in which a fit comes to its end
 
 
 class Challenge:
@@ -60,8 +64,8 @@ class Challenge:
         found.states[-1] = self._steps.renamed(found.final)
         # that two are one, or one is two, is a matter of words where no law is quite right
         if not brief and not self._steps.patience.over:
-            self._merge(found)
-            self._divide(found)
+            merged, split = merge(self._steps, found), divide(self._steps, found)
+            self._stood = {} if merged or split else self._stood
         self._near = {}
         # guesses creep along valleys, and rivals are fitted from here on: theirs is no merit
         creeps = any(t.guessed for t in self._problem.tolerances)
@@ -129,73 +133,6 @@ class Challenge:
         found.states[-1] = state
         return True
 
-    def _merge(self, found: Found) -> None:
-        """
-        Let one effect take the place of two on one body, if it does as well.
-
-        An eccentric wheel of a motor that gives more torque than it says, for one, is an encoder
-        that counts too few.
-        """
-        instrument = self._problem.rollouts.instrument
-        for one, two in combinations(found.final.model.causes, 2):
-            causes = found.final.model.causes
-            if not of_one_body(instrument, one, two) or not {one, two} <= set(causes):
-                continue
-            state = found.final
-            model = state.model.without(causes.index(one), causes.index(two))
-            smaller = self._problem.fitted(model, self._problem.slopes(state), 8, 1e-3)
-            if not math.isfinite(smaller.cost):
-                continue
-            among = [c for c in self._steps.candidates if of_one_body(instrument, one, c)]
-            proposals = best_of(self._steps.screened(Screen(self._problem, smaller), among=among))
-            rivals = self._steps.fitted(smaller, proposals, smaller.cost - state.cost)
-            rivals = self._sharpened(found, smaller, rivals, CLOSE)
-            if rivals and self._as_good(rivals[0].fit, state):
-                self._stood = {}
-                found.states[-1] = self._steps.settled(rivals[0].fit.model)
-
-    def _divide(self, found: Found) -> None:
-        """
-        Let effects that together do the same take the place of one, if they do better.
-
-        A motor's bias beside Coulomb friction is friction that differs by direction, but while
-        that builds up after a reversal.
-        """
-        instrument = self._problem.rollouts.instrument
-        for cause in found.final.model.causes:
-            state = found.final
-            causes = state.model.causes
-            together = find(cause.effect).alike
-            if together is None or cause.given:
-                continue
-            sizes = together(**state.model.values(causes.index(cause)))
-            parts = [
-                c
-                for c in self._steps.candidates
-                if c.effect in sizes and c not in causes and of_one_body(instrument, cause, c)
-            ]
-            if len(parts) != len(sizes):
-                continue
-            model = state.model.without(causes.index(cause))
-            for part in parts:
-                [parameter] = part.parameters
-                model = model.joined(part, {parameter.name: sizes[part.effect]})
-            divided = self._problem.fitted(model, self._problem.slopes(state), CREEPING, 1e-3)
-            if divided.cost < BETTER * state.cost:
-                self._stood = {}
-                found.states[-1] = divided
-
-    def _as_good(self, simpler: Fit, state: Fit) -> bool:
-        """
-        Return whether a state with fewer parameters does as well.
-
-        Where laws and machine are far apart a tie is wide: it has to be the better bet as well.
-        """
-        behind = (simpler.cost - state.cost) / len(state.left)
-        if behind > tie(self._problem, state):
-            return False
-        return criterion(self._problem, simpler) < criterion(self._problem, state)
-
     def _clearly(self, state: Fit, without: Fit, rivals: Sequence[Rival]) -> bool:
         """Return whether a cause is missed so much more than any rival makes up for."""
         missed = without.cost - state.cost
@@ -228,7 +165,7 @@ class Challenge:
         if not brief:
             begun = self._begun.beside_the_others(found.final, cause, without, rivals)
             rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
-        rivals = self._sharpened(found, without, rivals, BRIEFLY if brief else CLOSE)
+        rivals = sharpened(self._steps, found.final, without, rivals, BRIEFLY if brief else CLOSE)
         return [r for r in rivals if self._more_than_a_part(r)]
 
     def _more_than_a_part(self, rival: Rival) -> bool:
@@ -255,28 +192,6 @@ class Challenge:
         others = [s for s in found.states if cause not in s.model.causes]
         return min(others, key=lambda s: s.cost)
 
-    def _sharpened(
-        self, found: Found, without: Fit, rivals: list[Rival], most: int
-    ) -> list[Rival]:
-        """Fit most of the rivals that come near as carefully as the cause that they challenge."""
-        state = found.final
-        close = close_ones(self._problem, state, without, rivals)[:most]
-        equal = state.cost + tie(self._problem, state) * len(state.left)
-
-        here = self._problem.slopes(state)
-
-        def careful(rival: Rival) -> Fit:
-            # derivatives of another state stall a fit: two places then seem to differ that do not;
-            # when events were is found in the second fit
-            fit = self._problem.fitted(rival.fit.model, here, rounds=10, accuracy=UNTIMED)
-            if fit.cost <= equal:
-                return fit
-            return self._problem.fitted(fit.model, rounds=6, accuracy=1e-3)
-
-        fits = list(self._steps.pool.map(careful, close))
-        sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
-        return sorted([*sharp, *(r for r in rivals if r not in close)], key=judged_cost)
-
     def _better(
         self,
         found: Found,
@@ -297,7 +212,7 @@ class Challenge:
             if is_part(rival, cause):
                 return bet
             if more < 0:
-                return self._as_good(fit, state)
+                return as_good(self._problem, fit, state)
             if more > 0:
                 return ahead > tie(self._problem, fit) and (bet or not is_part(cause, rival))
             return fit.cost < BETTER * state.cost
@@ -311,8 +226,8 @@ class Challenge:
         close = [] if brief else close_ones(self._problem, state, without, rivals)
         for rival in close[:2]:
             smaller = relieved(self._problem, rival.fit)
-            if smaller is not None and self._as_good(smaller, state):
+            if smaller is not None and as_good(self._problem, smaller, state):
                 trial = self._steps.settled(smaller.model, self._problem.slopes(smaller))
-                if self._as_good(trial, state):
+                if as_good(self._problem, trial, state):
                     return trial
         return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -21,3 +22,20 @@ def criterion(problem: Problem, fit: Fit) -> float:
     seconds = 1.0 + float(problem.clusters(CLUSTER).max(initial=0))
     parameters = sum(map(len, fit.model.z))
     return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
+
+
+def as_good(problem: Problem, simpler: Fit, state: Fit) -> bool:
+    """
+    Return whether a state with fewer parameters does as well.
+
+    Where laws and machine are far apart a tie is wide: it has to be the better bet as well.
+
+    :param problem: the data.
+    :param simpler: the state.
+    :param state: what it is held against.
+    :return: whether.
+    """
+    behind = (simpler.cost - state.cost) / len(state.left)
+    if behind > tie(problem, state):
+        return False
+    return criterion(problem, simpler) < criterion(problem, state)

@@ -9,13 +9,17 @@ import numpy as np
 
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.steps import judged_cost, Steps
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 from tendon_ros.identify.worths import worths
 
 #: part of what a cause explains that a rival which is close may leave
 LEAVES = 0.05
+CLOSE = 6  # rivals that are fitted as carefully as the cause itself
+BETTER = 0.99  # part of the cost that what is no simpler must leave
+CREEPING = 20  # rounds at most in which a fit comes to its end
 #: of those that are worth least beside a rival, how many may have stood for it
 SUSPECTS = 2
 
@@ -103,3 +107,34 @@ def relieved(problem: Problem, fit: Fit) -> Fit | None:
         return None
     # who takes over what has gone moves far: derivatives from before stall
     return problem.fitted(best.model, rounds=8, accuracy=1e-3)
+
+
+def sharpened(
+    steps: Steps, state: Fit, without: Fit, rivals: Sequence[Rival], most: int
+) -> list[Rival]:
+    """
+    Fit most of the rivals that come near as carefully as the cause that they challenge.
+
+    :param steps: of the search.
+    :param state: with the cause.
+    :param without: without it.
+    :param rivals: fits of others in its place, best first.
+    :param most: how many are fitted.
+    :return: all of them, best first.
+    """
+    problem = steps.problem
+    close = close_ones(problem, state, without, rivals)[:most]
+    equal = state.cost + tie(problem, state) * len(state.left)
+    here = problem.slopes(state)
+
+    def careful(rival: Rival) -> Fit:
+        # derivatives of another state stall a fit: two places then seem to differ that do not;
+        # when events were is found in the second fit
+        fit = problem.fitted(rival.fit.model, here, rounds=10, accuracy=UNTIMED)
+        if fit.cost <= equal:
+            return fit
+        return problem.fitted(fit.model, rounds=6, accuracy=1e-3)
+
+    fits = list(steps.pool.map(careful, close))
+    sharp = [Rival(r.candidate, fit) for r, fit in zip(close, fits, strict=True)]
+    return sorted([*sharp, *(r for r in rivals if r not in close)], key=judged_cost)

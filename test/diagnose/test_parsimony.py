@@ -5,10 +5,10 @@ import math
 
 import pytest
 
-from tendon_ros.diagnose import challenge
+from tendon_ros.diagnose import parsimony
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.parsimony import criterion
+from tendon_ros.diagnose.parsimony import as_good, criterion
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import best_of, Steps
 from tendon_ros.identify.candidate import Candidate
@@ -35,16 +35,19 @@ def test_a_parameter_pays_by_the_second(problem):
     assert criterion(problem, replace(rich, cost=1.05 * even)) > criterion(problem, simple)
 
 
-def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(problem, monkeypatch):
+@pytest.mark.parametrize(('apart', 'good'), [(0.95, True), (1.05, False)])
+def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(
+    problem, monkeypatch, apart, good
+):
     # laws and machine so far apart that any two fits tie
-    monkeypatch.setattr(challenge, 'tie', lambda *_: 1e6)
-    steps = Steps(problem, [COULOMB, STRIBECK], 1, lambda *_: None)
-    start = problem.fitted(problem.empty)
-    found = Found(proposals=best_of(steps.screened(Screen(problem, start))))
-    found.states += [start, problem.fitted(problem.empty.joined(STRIBECK, FALLING))]
-    Challenge(steps, {}).of(found)
-    assert COULOMB in [rival.candidate for rival in found.rivals[0]]
-    assert found.final.model.causes == (STRIBECK,)
+    monkeypatch.setattr(parsimony, 'tie', lambda *_: 1e6)
+    simple = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}), rounds=1)
+    rich = problem.fitted(problem.empty.joined(STRIBECK, FALLING), rounds=1)
+    seconds = 1 + problem.clusters(1.0).max()
+    even = simple.cost * math.exp(-2.0 * math.log(seconds) / seconds)
+    assert as_good(problem, simple, replace(rich, cost=even / apart)) == good
+    monkeypatch.setattr(parsimony, 'tie', lambda *_: 0.0)
+    assert not as_good(problem, simple, replace(rich, cost=0.99 * simple.cost))
 
 
 @pytest.mark.parametrize(
