@@ -17,6 +17,7 @@ from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.places import Places
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.valleys import started
 
 STRATA = ('unknown', 'withheld', 'unknown')
 
@@ -25,7 +26,7 @@ def blamed(case: Case) -> list[str]:
     """Return the first place, and those that no channel tells from it."""
     recordings = admitted(list(case.recordings.values()), case.instrument).recordings
     problem = prepared(recordings, case.instrument).problem
-    places = Places(problem, Steps(problem, (), 1, lambda _what, _done: None).started())
+    places = Places(problem, started(Steps(problem, (), 1, lambda _what, _done: None)))
     return [name for one in places.shares(most=1) for name in (one.place, *one.same)]
 
 

@@ -26,6 +26,7 @@ from tendon_ros.diagnose.rivals import (
     sharpened,
 )
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
+from tendon_ros.diagnose.valleys import nudged
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
@@ -73,7 +74,7 @@ class Challenge:
         if creeps:
             before = found.final
             if not brief:
-                found.states[-1] = self._steps.nudged(before)
+                found.states[-1] = nudged(self._steps, before)
             changed |= self._converged(found) or found.final is not before
         replaced = 0
         stood = self._stood

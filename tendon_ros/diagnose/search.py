@@ -20,8 +20,9 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
-from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, SETTLED, Steps
+from tendon_ros.diagnose.steps import best_of, CORRECTED, Report, Steps
 from tendon_ros.diagnose.undoing import undoing
+from tendon_ros.diagnose.valleys import from_afar, SETTLED, started
 from tendon_ros.diagnose.worth import (
     beyond_laws,
     hopeless,
@@ -89,7 +90,7 @@ class Search:
         """
         found = Found()
         self._steps.report('fitting the tolerances', 0.0)
-        state = self._steps.started()
+        state = started(self._steps)
         found.states.append(state)
         self._steps.report('screening the candidates', 0.03)
         screen = Screen(self.problem, state, self._seen)
@@ -165,7 +166,7 @@ class Search:
                 lost = find(candidate.effect).typical
                 alone = self.problem.empty.joined(candidate, lost)
                 fits += [
-                    self._steps.from_afar(found.start.model.joined(candidate, lost)),
+                    from_afar(self._steps, found.start.model.joined(candidate, lost)),
                     self._of_many(found, alone),
                     self._from_the_file(found, alone),
                 ]

@@ -13,9 +13,8 @@ from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.patience import Patience
-from tendon_ros.diagnose.worth import needed, open_question, worthwhile
+from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.effects import find
-from tendon_ros.identify.afar import afar, aside
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -34,13 +33,6 @@ CLEAR = 10.0
 FIRST_ORDER_SEES = 0.4
 #: the same of the effect in question at other places
 KIN_SEEN = 0.1
-#: part of what numbers fitted from the file's own leave beyond noise that others, far from them,
-#: may leave; and how many of these are fitted to their end
-FARTHER, ENDED = 0.8, 2
-#: noise power a sample from which on it is more than misplaced guesses that is wrong
-SETTLED = 1.0
-#: how often guesses are moved aside, and part of the cost that has to stay for it to have helped
-NUDGES, NUDGED = 3, 0.98
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -181,70 +173,6 @@ class Steps:
         if known is None and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
             return fit
         return self.problem.fitted(fit.model, rounds=6, accuracy=1e-3)
-
-    def started(self) -> Fit:
-        """
-        Fit the numbers of the file without any cause.
-
-        :return: the fit from the file's own numbers, or from far off where that leaves much less.
-        """
-        near = self.settled(self.problem.empty)
-        far = self.from_afar(self.problem.empty)
-        if far is None:
-            return near
-        # what neighbouring bins share is what a better place would take away
-        shared = self.problem.structured(near.left) * len(near.left)
-        return self.nudged(far if near.cost - far.cost > (1.0 - FARTHER) * shared else near)
-
-    def nudged(self, state: Fit) -> Fit:
-        """
-        Return a state out of the valley in which its guesses were, if there is a deeper one.
-
-        Where one cable is too stiff another is too soft, and no small step mends both.
-
-        :param state: with all its causes.
-        :return: the better one; the same where it leaves nothing, or more than guesses are for.
-        """
-        for _ in range(NUDGES):
-            little = self.problem.structured(state.left) < SETTLED
-            begun = aside(self.problem, state.model)
-            if not (begun and little and open_question(self.problem, state)):
-                break
-            known = self.problem.slopes(state)
-            rough = self._rough(begun, known, rounds=6)
-            # what has come back leaves the very same, however far numbers are that nothing tells
-            least = (1.0 - NUDGED) * state.cost
-            away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
-            ended = self._ended(away, lambda model: self.problem.fitted(model, rounds=12))
-            if ended is None or not ended.cost < NUDGED * state.cost:
-                break
-            state = ended
-        return state
-
-    def from_afar(self, model: Model) -> Fit | None:
-        """
-        Fit with guesses that begin far from the file's own.
-
-        :param model: causes.
-        :return: the best fit; None where guesses need not be looked for from afar.
-        """
-        return self._ended(self._rough(afar(self.problem, model)), self.settled)
-
-    def _rough(
-        self,
-        begun: Sequence[Model],
-        known: Mapping[str, FloatArray] | None = None,
-        rounds: int = 12,
-    ) -> list[Fit]:
-        """Return rough fits from several beginnings."""
-        fits = self.pool.map(lambda m: self.problem.fitted(m, known, rounds, accuracy=1e-2), begun)
-        return list(fits)
-
-    def _ended(self, rough: Sequence[Fit], end: Callable[[Model], Fit]) -> Fit | None:
-        """Return the best of rough fits once they are fitted to their end; None where none is."""
-        best = sorted(rough, key=lambda fit: fit.cost)[:ENDED]
-        ended = self.pool.map(lambda fit: end(fit.model), best)
-        return min(ended, key=lambda fit: fit.cost, default=None)
 
     def pruned(self, start: Fit, state: Fit) -> Fit:
         """

@@ -14,6 +14,7 @@ from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.undoing import absorbed, conspiring, undoing, undone
+from tendon_ros.diagnose.valleys import started
 from tendon_ros.identify.candidate import Candidate
 
 WAVE = np.sin(np.linspace(0.0, 20.0, 400))
@@ -169,7 +170,7 @@ def test_an_encoder_is_no_cause_where_only_the_bend_of_a_weight_tells_of_it():
     ready = prepared(list(case.recordings.values()), case.instrument)
     gain = Candidate('encoder_gain', 'encoder_M')
     steps = Steps(ready.problem, [gain], 1, lambda *_: None)
-    start = steps.started()
+    start = started(steps)
     state = steps.settled(start.model.joined(gain, {'gain': 2.0}))
     assert state.cost < start.cost - 0.3 * len(start.left)
     found = Found([start, state], [[]], [start])

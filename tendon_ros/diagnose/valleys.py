@@ -1,0 +1,102 @@
+"""
+Valleys in which fits of guessed numbers end, and ways out of them.
+
+A fit goes downhill from where it begins. Numbers that were only guessed are far off, and from
+there the way may end in a valley that is not the deepest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.worth import open_question
+from tendon_ros.identify.afar import afar, aside
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit
+
+FloatArray = NDArray[np.float64]
+
+#: part of what numbers fitted from the file's own leave beyond noise that others, far from them,
+#: may leave; and how many of these are fitted to their end
+FARTHER, ENDED = 0.8, 2
+#: noise power a sample from which on it is more than misplaced guesses that is wrong
+SETTLED = 1.0
+#: how often guesses are moved aside, and part of the cost that has to stay for it to have helped
+NUDGES, NUDGED = 3, 0.98
+
+
+def started(steps: Steps) -> Fit:
+    """
+    Fit the numbers of the file without any cause.
+
+    :param steps: of the search.
+    :return: the fit from the file's own numbers, or from far off where that leaves much less.
+    """
+    problem = steps.problem
+    near = steps.settled(problem.empty)
+    far = from_afar(steps, problem.empty)
+    if far is None:
+        return near
+    # what neighbouring bins share is what a better place would take away
+    shared = problem.structured(near.left) * len(near.left)
+    return nudged(steps, far if near.cost - far.cost > (1.0 - FARTHER) * shared else near)
+
+
+def nudged(steps: Steps, state: Fit) -> Fit:
+    """
+    Return a state out of the valley in which its guesses were, if there is a deeper one.
+
+    Where one cable is too stiff another is too soft, and no small step mends both.
+
+    :param steps: of the search.
+    :param state: with all its causes.
+    :return: the better one; the same where it leaves nothing, or more than guesses are for.
+    """
+    problem = steps.problem
+    for _ in range(NUDGES):
+        little = problem.structured(state.left) < SETTLED
+        begun = aside(problem, state.model)
+        if not (begun and little and open_question(problem, state)):
+            break
+        rough = _rough(steps, begun, problem.slopes(state), rounds=6)
+        # what has come back leaves the very same, however far numbers are that nothing tells
+        least = (1.0 - NUDGED) * state.cost
+        away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
+        ended = _ended(steps, away, lambda model: problem.fitted(model, rounds=12))
+        if ended is None or not ended.cost < NUDGED * state.cost:
+            break
+        state = ended
+    return state
+
+
+def from_afar(steps: Steps, model: Model) -> Fit | None:
+    """
+    Fit with guesses that begin far from the file's own.
+
+    :param steps: of the search.
+    :param model: causes.
+    :return: the best fit; None where guesses need not be looked for from afar.
+    """
+    return _ended(steps, _rough(steps, afar(steps.problem, model)), steps.settled)
+
+
+def _rough(
+    steps: Steps,
+    begun: Sequence[Model],
+    known: Mapping[str, FloatArray] | None = None,
+    rounds: int = 12,
+) -> list[Fit]:
+    """Return rough fits from several beginnings."""
+    fit = steps.problem.fitted
+    return list(steps.pool.map(lambda m: fit(m, known, rounds, accuracy=1e-2), begun))
+
+
+def _ended(steps: Steps, rough: Sequence[Fit], end: Callable[[Model], Fit]) -> Fit | None:
+    """Return the best of rough fits once they are fitted to their end; None where none is."""
+    best = sorted(rough, key=lambda fit: fit.cost)[:ENDED]
+    ended = steps.pool.map(lambda fit: end(fit.model), best)
+    return min(ended, key=lambda fit: fit.cost, default=None)

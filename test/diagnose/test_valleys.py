@@ -1,0 +1,43 @@
+"""Fits of guesses get out of a valley that is not the deepest, and only they are moved."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tendon_ros.blind.case import made, Settings
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.valleys import nudged
+
+#: times what the file says, and what is added to dampings: where a fit from afar had ended
+VALLEY = {
+    'pulley_M.inertia': 1.163, 'pulley_L.inertia': 2.576, 'pulley_1.inertia': 0.91,
+    'pulley_2.inertia': 0.969, 'pulley_3.inertia': 0.54, 'cable_m1.pretension': 2.159,
+    'cable_m1.stiffness': 0.334, 'cable_12.pretension': 0.747, 'cable_12.stiffness': 1.657,
+    'cable_L3.pretension': 0.431, 'cable_L3.stiffness': 0.796, 'pulley_M.damping': -0.018,
+    'pulley_L.damping': 0.047, 'pulley_1.damping': 0.003, 'pulley_2.damping': 0.009,
+    'pulley_3.damping': 0.072,
+}  # fmt: skip
+
+
+def test_guesses_get_out_of_a_valley_in_which_one_cable_is_soft_for_another():
+    case = made(1075, 1, Settings(bench='guessed'))
+    assert case.label['stratum'] == 'none'
+    problem = prepared(list(case.recordings.values()), case.instrument).problem
+    moved = [
+        t.axis.place(VALLEY[name]) if (name := f'{t.place}.{t.quantity}') in VALLEY else 0.0
+        for t in problem.tolerances
+    ]
+    stuck = problem.fitted(replace(problem.empty, moved=np.array(moved)), rounds=20)
+    out = nudged(Steps(problem, [], 1, lambda *_: None), stuck)
+    assert out.cost < 0.95 * stuck.cost
+    assert problem.structured(out.left) < 0.5 * problem.structured(stuck.left)
+    assert not out.model.causes
+
+
+def test_nothing_is_nudged_where_nothing_is_guessed(bench, measured_on):
+    softer = ('cable_stiffness', 'cable_12', {'scale': 0.6})
+    run = measured_on(bench, softer, touching=True, trajectory='paper_fig12', settings=())
+    problem = prepared([run], bench).problem
+    start = problem.fitted(problem.empty)
+    assert nudged(Steps(problem, [], 1, lambda *_: None), start) is start
