@@ -1,5 +1,5 @@
 """
-Messages ↔ numbers by channel name; pure functions, the only ones that look into messages.
+Messages of joints and wrenches → numbers by channel name, stamps both ways; pure functions.
 
 What clients send is taken as they send it: names may be empty, numbers counted from zero or in
 another order. What makes no sense is refused with a reason, never guessed.
@@ -42,20 +42,6 @@ def from_stamp(stamp: Any) -> int:
     :return: since 1970 [ns].
     """
     return int(stamp.sec) * 10**9 + int(stamp.nanosec)
-
-
-def joint_state(stamp_ns: int, joints: Sequence[str], position: Sequence[float]) -> JointState:
-    """
-    Return a message of joint positions.
-
-    :param stamp_ns: header stamp [ns].
-    :param joints: names.
-    :param position: [rad], in the order of the names; numpy numbers are converted.
-    :return: the message.
-    """
-    message = JointState(name=list(joints), position=[float(value) for value in position])
-    message.header.stamp = to_stamp(stamp_ns)
-    return message
 
 
 def wanted_positions(message: JointState, joints: Sequence[str]) -> dict[str, float]:

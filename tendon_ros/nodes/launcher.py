@@ -22,8 +22,8 @@ from tendon_ros import __version__
 from tendon_ros.base.errors import TendonError
 from tendon_ros.nodes.settings import add_options, given_options, Setting, Value
 
-#: exit status: done; anything that is neither; the user's arguments or input are at fault
-DONE, FAILED, MISTAKE = 0, 1, 2
+#: exit status: done; the user's arguments or input are at fault; Python itself leaves with 1
+DONE, MISTAKE = 0, 2
 
 #: how long nodes that are told to stop may go on to get ready [s]
 GRACE = 1.0
