@@ -132,9 +132,9 @@ class Watch:
         Take in what one topic says of one instant.
 
         :param measurement: any channels; those that the instrument does not measure are left.
-        :raises RecordingError: on a value that is not finite, which is left out alone; on a stamp
-            that steps back or unknown joints: the measurement is then left out. The next good one
-            is welcome.
+        :raises StampError: on a stamp that steps back: the measurement is then left out.
+        :raises RecordingError: on a value that is not finite, which is left out alone; on unknown
+            joints: the measurement is then left out. The next good one is welcome.
         """
         self._streams.add(measurement)
 

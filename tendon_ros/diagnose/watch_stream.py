@@ -18,6 +18,10 @@ from tendon_ros.model.instrument import Instrument
 HOLE = 0.1
 
 
+class StampError(RecordingError):
+    """A stamp that does not come after the last one of its channel."""
+
+
 class Streams:
     """
     Keeps the last seconds of every channel that an instrument measures; of use to many threads.
@@ -43,15 +47,16 @@ class Streams:
         Take in what one topic says of one instant; what the instrument does not measure is left.
 
         :param measurement: its stamp lies after that of the last one with the same channels.
-        :raises RecordingError: on a value that is not finite, which is left out alone; on a stamp
-            that steps back, or where nothing belongs to the instrument: all is then left out.
+        :raises StampError: on a stamp that steps back: all is then left out.
+        :raises RecordingError: on a value that is not finite, which is left out alone; where
+            nothing belongs to the instrument: all is then left out.
         """
         named = self._own(tuple(measurement.values))
         names = [n for n in named if math.isfinite(measurement.values[n])]
         for name in names:
             last = self.newest(name)
             if last is not None and measurement.stamp_ns <= last:
-                raise RecordingError(
+                raise StampError(
                     f'{name}: stamp {measurement.stamp_ns} ns lies '
                     f'{(last - measurement.stamp_ns) * 1e-9:.6f} s before the last one; the '
                     'measurement is left out'

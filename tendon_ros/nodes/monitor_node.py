@@ -16,6 +16,7 @@ from tendon_ros.bags.topics import JOINT_TOPICS, place_of
 from tendon_ros.base.errors import TendonError
 from tendon_ros.diagnose.watch import Watch, WatchReport, WatchSettings
 from tendon_ros.diagnose.watch_gap import gap_after
+from tendon_ros.diagnose.watch_stream import StampError
 from tendon_ros.estimate import Measurement
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.nodes.conversions import from_stamp, values_of
@@ -136,12 +137,11 @@ class MonitorNode(TendonNode):
                 values = values_of(topic, message, joints)
                 self._watch.update(Measurement(from_stamp(message.header.stamp), values))
                 self._arrived[topic] = time.monotonic()
+            except StampError as error:
+                mend = f'call {self.get_fully_qualified_name()}/reset to begin anew'
+                self.complain('stamps that step back', f'{topic}: {error}; {mend}')
             except TendonError as error:
-                kind, text = 'measurements left out', str(error)
-                if 'before the last one' in text:
-                    kind = 'stamps that step back'
-                    text += f'; call {self.get_fully_qualified_name()}/reset to begin anew'
-                self.complain(kind, f'{topic}: {text}')
+                self.complain('measurements left out', f'{topic}: {error}')
 
         return on_message
 

@@ -11,6 +11,7 @@ from tendon_ros.bags.writer import write_recording
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.watch import Watch, WatchSettings
+from tendon_ros.diagnose.watch_stream import StampError
 from tendon_ros.estimate.observer import Measurement
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -276,7 +277,7 @@ def test_what_cannot_be_used_is_refused_and_the_rest_is_kept(rig):
     assert watch.missing == ()
     with pytest.raises(RecordingError, match='effort is nan; it is left out'):
         watch.update(Measurement(EPOCH + 1, {**both, 'actuator/pulley_M/effort': np.nan}))
-    with pytest.raises(RecordingError, match=r'stamp \d+ ns lies 0.000000 s before the last one'):
+    with pytest.raises(StampError, match=r'stamp \d+ ns lies 0.000000 s before the last one'):
         watch.update(Measurement(EPOCH + 1, both))
     with pytest.raises(RecordingError, match=r'pulley_X: bench_rig has .*rename them'):
         watch.update(Measurement(EPOCH + 2, {'actuator/pulley_X/position': 0.1}))
