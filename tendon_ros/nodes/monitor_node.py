@@ -77,7 +77,6 @@ class MonitorNode(TendonNode):
             kind = JointState if topic in JOINT_TOPICS else WrenchStamped
             self.create_subscription(kind, topic, self._hearer(topic), DEPTH)
         self.create_service(Trigger, '~/reset', self._on_reset)
-        self._thread = threading.Thread(target=self._work, name='watch')
         self.get_logger().info(
             f'ready after {time.monotonic() - start:.1f} s, listening to '
             f'{", ".join(sorted(self._channels))}'
@@ -85,13 +84,7 @@ class MonitorNode(TendonNode):
 
     def begin(self) -> None:
         """Start to compare."""
-        self._thread.start()
-
-    def close(self) -> None:
-        """Stop comparing."""
-        super().close()
-        if self._thread.is_alive():
-            self._thread.join()
+        self.work('watch', self._compare)
 
     def health(self) -> tuple[Level, str, Mapping[str, object]]:
         """Return what the last look showed, and publish what it showed of each channel."""
@@ -113,8 +106,6 @@ class MonitorNode(TendonNode):
                 f'no measurement of {", ".join(missing)} yet; the model of '
                 f'{self._watch.instrument.name} is driven with it'
             )
-        elif not self._thread.is_alive():
-            level, text = Level.ERROR, 'nothing is compared any more; see the log, start it anew'
         elif silent:
             level, text = Level.ERROR, next(iter(silent.values()))
         return level, text, details
@@ -145,7 +136,7 @@ class MonitorNode(TendonNode):
 
         return on_message
 
-    def _work(self) -> None:
+    def _compare(self) -> None:
         """Compare whenever a window is full."""
         while not self.stopping.wait(NAP):
             if self._anew.is_set():

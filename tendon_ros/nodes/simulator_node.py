@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-import threading
 import time
 
 from rcl_interfaces.msg import SetParametersResult
@@ -62,7 +61,6 @@ class SimulatorNode(TendonNode):
         self.create_service(Trigger, 'reset', self._on_reset)
         self.create_service(SetBool, 'contact', self._on_contact)
         self.every(0.2, lambda: self._crtk.publish(always=True))
-        self._thread = threading.Thread(target=self._loop, name='physics')
 
     def begin(self) -> None:
         """Start the clock of the physics."""
@@ -71,13 +69,7 @@ class SimulatorNode(TendonNode):
         if samples is not None:
             self._broadcast.prepare(samples.values)
         self._live.reset(time.time_ns(), time.monotonic())
-        self._thread.start()
-
-    def close(self) -> None:
-        """Stop the physics."""
-        super().close()
-        if self._thread.is_alive():
-            self._thread.join()
+        self.work('physics', self._loop)
 
     def health(self) -> tuple[Level, str, Mapping[str, object]]:
         """Return how the simulation keeps up, and what is in force."""

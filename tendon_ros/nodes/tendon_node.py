@@ -1,4 +1,4 @@
-"""What all nodes share: checked parameters, complaints that do not flood, diagnostics at 1 Hz."""
+"""What all nodes share: checked parameters, complaints that do not flood, health, a worker."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from rclpy.parameter import Parameter
 from rclpy.timer import Timer
 
 from tendon_ros.bags.topics import DEFAULT_NAMESPACE
-from tendon_ros.base.errors import TendonError
 from tendon_ros.nodes.complaints import Complaints
 from tendon_ros.nodes.diagnostics import diagnostic_array, Level
 from tendon_ros.nodes.settings import checked, refuse_unknown, Setting, Value
@@ -42,8 +41,9 @@ class TendonNode(Node):
         self.stopping = threading.Event()
         #: the node has done what it was started for
         self.finished = False
-        #: why the node cannot go on, where the user can mend it
-        self.failure: TendonError | None = None
+        #: why the node cannot go on; a TendonError where the user can mend it
+        self.failure: Exception | None = None
+        self._worker: threading.Thread | None = None
         self.settings: dict[str, Setting] = {}
         self._complaints = Complaints(self.get_logger().warning)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', 10)
@@ -53,8 +53,28 @@ class TendonNode(Node):
         """Start what runs beside the callbacks."""
 
     def close(self) -> None:
-        """End what runs beside the callbacks."""
+        """End what runs beside the callbacks, and wait until it has ended."""
         self.stopping.set()
+        if self._worker is not None:
+            self._worker.join()
+
+    def work(self, name: str, task: Callable[[], None]) -> None:
+        """
+        Run a task in a thread beside the callbacks; the node ends where the task fails.
+
+        :param name: of the thread.
+        :param task: what to do, until ``stopping`` is set.
+        """
+
+        def run() -> None:
+            try:
+                task()
+            except Exception as error:
+                # a thread that dies alone leaves a node that looks sound and does nothing
+                self.failure = error
+
+        self._worker = threading.Thread(target=run, name=name)
+        self._worker.start()
 
     def health(self) -> tuple[Level, str, Mapping[str, object]]:
         """Return level, one line and details for the diagnostics."""

@@ -63,17 +63,10 @@ class TrajectoryNode(TendonNode):
         self._ear = self.create_subscription(
             JointState, 'actuator/measured_js', self._on_measured, 10, raw=True
         )
-        self._thread = threading.Thread(target=self._drive, name='trajectory')
 
     def begin(self) -> None:
         """Start to wait for the motors."""
-        self._thread.start()
-
-    def close(self) -> None:
-        """Stop sending; the motors hold the last set-point."""
-        super().close()
-        if self._thread.is_alive():
-            self._thread.join()
+        self.work('trajectory', self._drive)
 
     def health(self) -> tuple[Level, str, Mapping[str, object]]:
         """Return how far it is."""
