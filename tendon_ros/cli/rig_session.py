@@ -6,8 +6,8 @@ Nothing of ROS is imported here; the nodes are started by their module names.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, ExitStack
 import os
 from pathlib import Path
 import random
@@ -55,9 +55,10 @@ class _Process:
         raise SimulationError(f'{self.name}: {what}: {lines[-1]} (log: {self.log})')
 
     def stop(self) -> None:
-        """End the node as Ctrl-C does, and wait until it has closed what it has open."""
+        """End the node, and wait until it has closed what it has open."""
         if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
+            # not SIGINT, which a shell lets what it runs in the background ignore
+            self.process.terminate()
             try:
                 self.process.wait(20.0)
             except subprocess.TimeoutExpired:
@@ -79,6 +80,7 @@ def record_rig(
     :param span: expected duration of the trajectory [s], for the progress alone.
     :return: the bag.
     :raises SimulationError: where a node does not start or fails; names its log.
+    :raises KeyboardInterrupt: on SIGTERM as on Ctrl-C, once the nodes have ended.
     """
     os.environ.setdefault('ROS_DOMAIN_ID', str(random.SystemRandom().randint(1, 100)))
     bag = folder / 'rig_bag'
@@ -90,7 +92,7 @@ def record_rig(
         'trajectory': ['--instrument', instrument, '--trajectory', 'paper_fig12'],
     }
     namespace = ['--ros-args', '-r', '__ns:=/instrument']
-    with ExitStack() as running:
+    with _interrupted_by_sigterm(), ExitStack() as running:
         for name in names:
             node = _Process(name, [*arguments[name], *namespace], folder)
             running.callback(node.stop)
@@ -109,3 +111,13 @@ def record_rig(
         time.sleep(1.0)  # let the last measurements come through
     progress(1.0)
     return bag
+
+
+@contextmanager
+def _interrupted_by_sigterm() -> Iterator[None]:
+    """Let SIGTERM do what Ctrl-C does: by itself it ends this process alone, not its nodes."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

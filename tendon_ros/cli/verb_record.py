@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
+import os
 import sys
+from typing import NoReturn
 
 HELP = 'record a live instrument to a bag until Ctrl-C or for --duration; needs ROS 2'
 
@@ -28,9 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run(args: argparse.Namespace) -> None:
+def run(args: argparse.Namespace) -> NoReturn:
     """
-    Run the node and leave with its exit status.
+    Become the node.
 
     :param args: the parsed arguments.
     """
@@ -41,10 +42,6 @@ def run(args: argparse.Namespace) -> None:
             command += [f'--{name}', str(value)]
     if args.namespace is not None:
         command += ['--ros-args', '-r', f'__ns:=/{args.namespace.strip("/")}']
-    # A node of its own process: Ctrl-C reaches it directly, and it closes the bag itself.
-    process = subprocess.Popen(command)
-    while True:
-        try:
-            sys.exit(process.wait())
-        except KeyboardInterrupt:
-            continue
+    # In place, not as a child: whatever is sent to this process the node hears, which then closes
+    # the bag, and nothing stays behind that goes on to record.
+    os.execv(sys.executable, command)
