@@ -1,4 +1,4 @@
-"""A planned motion of several joints that starts and ends at rest: what ``move_jp`` does."""
+"""A planned motion of several joints, from rest to rest: for ``move_jp`` and to a first point."""
 
 from __future__ import annotations
 
@@ -46,6 +46,7 @@ def plan(
     goal: Mapping[str, float],
     begin: float,
     speeds: Mapping[str, float],
+    shortest: float = 0.0,
 ) -> Motion:
     """
     Return the motion that takes every joint to its goal in the same time.
@@ -54,7 +55,8 @@ def plan(
     :param goal: positions to reach [rad]; joints that are left out stay.
     :param begin: when it begins [s].
     :param speeds: the speed that a joint may reach on the way [rad/s], by joint.
-    :return: the motion, as quick as the speeds allow.
+    :param shortest: the time that it takes at least [s].
+    :return: the motion, as quick as that and the speeds allow.
     """
     ends = {**start, **goal}
     slowest = max((abs(ends[name] - start[name]) / speeds[name] for name in start), default=0.0)
@@ -62,5 +64,5 @@ def plan(
         np.array(list(start.values())),
         np.array([ends[name] for name in start]),
         begin,
-        PEAK * slowest,
+        max(PEAK * slowest, shortest),
     )

@@ -35,7 +35,8 @@ PROGRAM = Program(
         Setting(
             'approach',
             1.0,
-            'time of the smooth way from where the motors are to the first point; 0 for none',
+            'time of the smooth way from where the motors are to the first point, longer where '
+            'speed_limit asks for it; 0 for none',
             's',
             0.0,
             100.0,
