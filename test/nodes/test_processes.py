@@ -346,21 +346,6 @@ def test_a_mistake_is_one_line_and_status_2(start, node, arguments, said, tmp_pa
     assert len(lines) == 1, one.said
 
 
-def test_a_trajectory_waits_until_its_commands_reach_somebody(start, client):
-    one = start('trajectory', '--repeats', 0, '--ros-args', '-r', '__ns:=/alone')
-    motors = client.publisher('/alone/actuator/measured_js', JointState)
-    at = JointState(name=['pulley_M', 'pulley_L'], position=[0.0, 0.0])
-
-    def warned():
-        motors.publish(at)
-        return 'nobody takes commands' in one.said
-
-    client.wait(warned, 'nobody was missed')
-    heard = client.hear('/alone/actuator/servo_jp', JointState)
-    client.wait(lambda: heard, f'nothing was commanded:\n{one.said}')
-    assert one.stop() == 0, one.said
-
-
 def test_a_signal_ends_a_first_start_that_still_compiles(start, tmp_path, monkeypatch):
     monkeypatch.setenv('XDG_CACHE_HOME', str(tmp_path))
     one = start('simulator')

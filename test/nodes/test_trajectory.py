@@ -66,6 +66,15 @@ def way(heard):
     return time - time[0], np.array([message.position[0] for message in heard])
 
 
+def test_it_waits_until_its_commands_reach_somebody(start, client, motors):
+    one = start('trajectory', '--repeats', 0, '--ros-args', '-r', '__ns:=/patient')
+    robot = motors('/patient')
+    one.wait_for('nobody takes commands')
+    heard = robot.listen()
+    client.wait(lambda: heard, f'nothing was commanded:\n{one.said}')
+    assert one.stop() == 0, one.said
+
+
 def test_the_way_begins_where_the_motors_are_when_it_begins(start, motors):
     step = ('--trajectory', 'step', '--step.duration', '0.1', '--approach', '0.5')
     one = start('trajectory', *step, '--ros-args', '-r', '__ns:=/moved')
