@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from tendon_ros.bags.stamps import IntArray, to_stamps
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError
+from tendon_ros.base.outputs import check_output
 from tendon_ros.base.recording import Channel, Recording
 
 TIME_COLUMN = 'time [s]'
@@ -31,7 +32,7 @@ def export_csv(recording: Recording, out: Path | str, *, overwrite: bool = False
     :param out: a file that ends in ``.csv``, or a folder.
     :param overwrite: replace files that are there.
     :return: the files written.
-    :raises RecordingError: where a file exists or cannot be written.
+    :raises OutputError: where a file exists or cannot be written.
     """
     out = Path(out)
     if out.suffix == '.csv':
@@ -39,14 +40,13 @@ def export_csv(recording: Recording, out: Path | str, *, overwrite: bool = False
     else:
         files = _by_stamps(recording, out)
     for path in files:
-        if path.exists() and not overwrite:
-            raise RecordingError(f'{path}: exists; give another path or allow to overwrite it')
+        check_output(path, overwrite=overwrite)
     for path, channels in files.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             _write(path, channels, recording.epoch_ns)
         except OSError as error:
-            raise RecordingError(
+            raise OutputError(
                 f'{path}: cannot be written ({error}); give a folder that can be written'
             ) from error
     return list(files)

@@ -8,6 +8,7 @@ namespace of the instrument in front (``/instrument/actuator/measured_js``).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+import re
 from types import MappingProxyType
 
 from tendon_ros.base.errors import listed, RecordingError
@@ -96,6 +97,20 @@ def clean_namespace(namespace: str) -> str:
     """
     stripped = namespace.strip('/')
     return f'/{stripped}' if stripped else ''
+
+
+def check_namespace(namespace: str) -> None:
+    """
+    Check that ROS can use a namespace.
+
+    :param namespace: see :func:`clean_namespace`.
+    :raises RecordingError: where it cannot, with what a name may have in it.
+    """
+    if not re.fullmatch(r'(/[A-Za-z_][A-Za-z0-9_]*)*', clean_namespace(namespace)):
+        raise RecordingError(
+            f'namespace {namespace!r}: ROS cannot use it; between slashes write letters, digits '
+            'and underscores, no digit first, such as /arm/instrument'
+        )
 
 
 def full_topic(namespace: str, topic: str) -> str:

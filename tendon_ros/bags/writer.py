@@ -10,7 +10,9 @@ import tempfile
 
 from tendon_ros.bags.bag_writer import BagWriter, Storage
 from tendon_ros.bags.encoding import Batch, joint_states, wrenches
+from tendon_ros.bags.place import check_bag_output
 from tendon_ros.bags.topics import (
+    check_namespace,
     clean_namespace,
     DEFAULT_NAMESPACE,
     full_topic,
@@ -18,7 +20,7 @@ from tendon_ros.bags.topics import (
     TOPIC_TYPES,
     WRENCH_TOPICS,
 )
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 
 #: file name endings that ask for one file instead of a folder
@@ -42,13 +44,14 @@ def write_recording(
     :param namespace: of the instrument.
     :param storage: ``mcap`` or ``sqlite3``; the ending of a single file decides by itself.
     :param compress: compress the chunks of an MCAP.
-    :param overwrite: replace what is there.
+    :param overwrite: replace a bag that is there; anything else is never replaced.
     :return: the path.
-    :raises RecordingError: where a channel has no topic, or the bag cannot be created.
+    :raises RecordingError: where a channel has no topic, or ROS cannot use the namespace.
+    :raises OutputError: where the bag cannot be created, or something is in its place.
     """
     path = Path(path)
-    if path.exists() and not overwrite:
-        raise RecordingError(f'{path}: exists; give another path or allow to overwrite it')
+    check_namespace(namespace)
+    check_bag_output(path, overwrite=overwrite)
     single = path.suffix in FILE_STORAGE
     batches = _batches(recording)
     metadata = {
@@ -61,7 +64,7 @@ def write_recording(
         path.parent.mkdir(parents=True, exist_ok=True)
         part = Path(tempfile.mkdtemp(prefix=f'.{path.name}-', dir=path.parent))
     except OSError as error:
-        raise RecordingError(
+        raise OutputError(
             f'{path}: cannot be created ({error}); give a folder that can be written'
         ) from error
     try:
@@ -76,12 +79,22 @@ def write_recording(
             for stamp, topic, cdr in _in_order(batches):
                 bag.write_raw(full_topic(namespace, topic), cdr, stamp)
         done = bag.path / f'{path.stem}{path.suffix}' if single else bag.path
-        if path.is_dir():
-            shutil.rmtree(path)
-        done.replace(path)
+        _put(done, path)
     finally:
         shutil.rmtree(part, ignore_errors=True)
     return path
+
+
+def _put(done: Path, path: Path) -> None:
+    """Move a bag to its place, where another bag may be."""
+    try:
+        if path.is_dir():
+            shutil.rmtree(path)
+        done.replace(path)
+    except OSError as error:
+        raise OutputError(
+            f'{path}: cannot be replaced ({error.strerror}); give another path'
+        ) from error
 
 
 def _batches(recording: Recording) -> dict[str, list[Batch]]:

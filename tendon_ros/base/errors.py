@@ -35,6 +35,10 @@ class EffectError(TendonError):
     """An effect, a place or an effect parameter that does not exist or is out of bounds."""
 
 
+class OutputError(TendonError):
+    """A place that cannot be written to, or that holds what must not be replaced."""
+
+
 def listed(names: Iterable[str]) -> str:
     """
     Return names as a readable list for an error message.

@@ -10,7 +10,7 @@ from tendon_ros.bags.bag_writer import BagWriter
 from tendon_ros.bags.export import export_csv
 from tendon_ros.bags.info import summarise
 from tendon_ros.bags.writer import write_recording
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError
 from tendon_ros.base.recording import Channel, Recording
 
 
@@ -86,6 +86,6 @@ def test_channels_of_a_group_with_other_stamps_get_their_own_file(tmp_path):
 
 def test_existing_files_are_kept_unless_allowed(recording, tmp_path):
     export_csv(recording, tmp_path / 'x.csv')
-    with pytest.raises(RecordingError, match='exists'):
+    with pytest.raises(OutputError, match='exists'):
         export_csv(recording, tmp_path / 'x.csv')
     export_csv(recording, tmp_path / 'x.csv', overwrite=True)

@@ -9,7 +9,7 @@ import yaml
 from tendon_ros.bags import writer
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 
 
@@ -86,10 +86,64 @@ def test_joints_with_equal_fields_share_a_message(recording, tmp_path):
 
 def test_an_existing_bag_is_kept_unless_allowed(recording, tmp_path):
     path = write_recording(recording, tmp_path / 'bag')
-    with pytest.raises(RecordingError, match='exists'):
+    with pytest.raises(OutputError, match='exists'):
         write_recording(recording, path)
     write_recording(recording, path, overwrite=True)
     assert_same(recording, read_recording(path))
+
+
+@pytest.mark.parametrize('out', ['bag', 'one.mcap', 'one.db3', 'empty'])
+def test_a_bag_is_replaced_where_that_is_allowed(recording, tmp_path, out):
+    if out == 'empty':
+        (tmp_path / out).mkdir()
+    else:
+        write_recording(recording, tmp_path / out, namespace='before')
+    path = write_recording(recording, tmp_path / out, overwrite=True)
+    assert read_recording(path).metadata['namespace'] == '/instrument'
+
+
+@pytest.mark.parametrize(
+    ('out', 'made', 'beside'),
+    [
+        ('work', '', 'work/thesis.tex'),
+        ('text.txt', '', 'text.txt'),
+        ('helm', '', 'helm/metadata.yaml'),
+        ('noted', 'noted', 'noted/notes.txt'),
+        ('nested', 'nested', 'nested/more/x'),
+    ],
+)
+def test_only_a_bag_is_replaced(recording, tmp_path, out, made, beside):
+    if made:
+        write_recording(recording, tmp_path / made)
+    beside = tmp_path / beside
+    beside.parent.mkdir(exist_ok=True)
+    beside.write_text('{years: of work}')
+    with pytest.raises(OutputError, match='is no bag that could be replaced'):
+        write_recording(recording, tmp_path / out, overwrite=True)
+    assert beside.read_text() == '{years: of work}'
+
+
+def test_a_folder_of_single_files_is_no_bag(recording, tmp_path):
+    one = write_recording(recording, tmp_path / 'recordings' / 'one.mcap')
+    with pytest.raises(OutputError, match=r'is no bag .*one\.mcap'):
+        write_recording(recording, one.parent, overwrite=True)
+    assert one.exists()
+
+
+def test_a_link_is_not_replaced(recording, tmp_path):
+    real = write_recording(recording, tmp_path / 'real')
+    (tmp_path / 'link').symlink_to(real)
+    (tmp_path / 'dangling').symlink_to(tmp_path / 'nowhere')
+    for link in ('link', 'dangling'):
+        with pytest.raises(OutputError, match='is a link'):
+            write_recording(recording, tmp_path / link, overwrite=True)
+    assert_same(recording, read_recording(real))
+
+
+def test_a_bag_needs_folders_above_it(recording, tmp_path):
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(OutputError, match='is a file, not a folder'):
+        write_recording(recording, tmp_path / 'file' / 'deep' / 'bag')
 
 
 def test_no_half_bag_is_left_behind(recording, tmp_path, monkeypatch):
