@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tendon_ros.cli.arguments import takes_bags
+from tendon_ros.cli.arguments import files_read, takes_bags
+
+#: endings of outputs that hold one recording
+ONE_FILE = ('.csv', '.mcap', '.db3')
 
 HELP = 'estimate the operating force and the inner pulleys from a bag'
 
@@ -69,25 +72,20 @@ def run(args: argparse.Namespace) -> None:
     if args.rate is not None and not args.rate > 0.0:
         raise RecordingError(f'--rate {args.rate:g}: must be positive')
     instrument = load_instrument(args.instrument)
-    channels = args.channels.split(',') if args.channels else None
+    channels = [c.strip() for c in args.channels.split(',')] if args.channels else None
     chosen = {'channels': channels, 'wander': args.wander}
     build(instrument, args.method, **chosen)  # a mistake is told before any bag is read
     squares, samples, unit = 0.0, 0, ''
-    for bag in args.bag:
-        out = Path(args.out)
-        if len(args.bag) > 1:
-            out = out / Path(bag).name
-        if out.exists() and not args.overwrite:
-            raise RecordingError(f'{out}: exists; give another path or --overwrite')
+    for bag, out in _places(args):
         recording = read_recording(bag, args.namespace)
         with shown(f'estimating {recording.name}') as progress:
             observer = build(instrument, args.method, **chosen)
             estimated = estimate_recording(recording, observer, progress, args.rate)
-        out.parent.mkdir(parents=True, exist_ok=True)
         if out.suffix == '.csv':
-            export_csv(estimated, out)
+            export_csv(estimated, out, overwrite=args.overwrite)
         else:
-            write_recording(estimated, out, overwrite=args.overwrite)
+            space = recording.metadata['namespace']
+            write_recording(estimated, out, namespace=space, overwrite=args.overwrite)
         score = scored(estimated, instrument)
         if score is None:
             print(f'{out}: no load cell in the bag to compare with')
@@ -102,3 +100,30 @@ def run(args: argparse.Namespace) -> None:
         )
     if samples and len(args.bag) > 1:
         print(f'all {len(args.bag)} bags: RMSE {np.sqrt(squares / samples):.4g} {unit}')
+
+
+def _places(args: argparse.Namespace) -> list[tuple[Path, Path]]:
+    """Return each bag and where its estimates go, all checked before the first one is read."""
+    from tendon_ros.bags.place import check_bag_output
+    from tendon_ros.bags.storage import open_bag
+    from tendon_ros.base.errors import OutputError
+    from tendon_ros.base.outputs import check_output
+
+    bags, out = [Path(bag) for bag in args.bag], Path(args.out)
+    if len(bags) > 1 and out.suffix in ONE_FILE:
+        raise OutputError(f'{out}: one file for {len(bags)} bags; give a folder')
+    places: dict[Path, Path] = {}
+    for bag in bags:
+        place = out / bag.resolve().name if len(bags) > 1 else out
+        if place in places:
+            raise OutputError(
+                f'{place}: for both {places[place]} and {bag}; estimate them one by one'
+            )
+        places[place] = bag
+    read = files_read(args)
+    for place, bag in places.items():
+        with open_bag(bag):
+            pass  # a damaged one is told now, and not after those before it
+        check = check_output if place.suffix == '.csv' else check_bag_output
+        check(place, read, overwrite=args.overwrite)
+    return [(bag, place) for place, bag in places.items()]

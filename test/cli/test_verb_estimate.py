@@ -1,0 +1,93 @@
+"""``tendon estimate`` writes where it was told to, and checks that before it reads a bag."""
+
+import shutil
+
+import pytest
+
+from tendon_ros.bags.reader import read_recording
+from tendon_ros.bags.writer import write_recording
+from tendon_ros.cli.main import main
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.session import simulate
+from tendon_ros.model.trajectory_choice import chosen
+
+
+@pytest.fixture(scope='module')
+def recorded():
+    """Return a tenth of a second of a rig."""
+    rig = load_instrument('bench_rig')
+    settings = {'amplitude': '2 deg', 'duration': '0.1 s'}
+    return simulate(rig, chosen('step', rig.motor_names, settings), engine='plain')
+
+
+@pytest.fixture
+def bag(recorded, tmp_path):
+    return write_recording(recorded, tmp_path / 'bag', namespace='/arm/left')
+
+
+def estimate(*words):
+    """Run the command; return its status."""
+    return main(['estimate', *map(str, words), '--instrument', 'bench_rig'])
+
+
+def test_a_csv_is_replaced_where_that_is_allowed(bag, tmp_path, capsys):
+    out = tmp_path / 'x.csv'
+    out.write_text('mine')
+    assert estimate(bag, '--out', out) == 2
+    assert f'{out}: exists' in capsys.readouterr().err
+    assert out.read_text() == 'mine'
+    assert estimate(bag, '--out', out, '--overwrite') == 0
+    assert 'estimate/force [N]' in out.read_text()
+
+
+def test_estimates_stay_in_the_namespace_of_the_bag(bag, tmp_path):
+    assert estimate(bag, '--out', tmp_path / 'new' / 'estimated') == 0
+    estimated = read_recording(tmp_path / 'new' / 'estimated')
+    assert estimated.metadata['namespace'] == '/arm/left'
+    assert 'estimate/force' in estimated
+
+
+def test_several_bags_go_into_a_folder(bag, tmp_path):
+    other = shutil.copytree(bag, tmp_path / 'other')
+    assert estimate(bag, other, '--out', tmp_path / 'all') == 0
+    assert {p.name for p in (tmp_path / 'all').iterdir()} == {'bag', 'other'}
+
+
+@pytest.mark.parametrize(
+    ('bags', 'out', 'said'),
+    [
+        (['bag', 'deep/bag'], 'all', 'for both bag and deep/bag'),
+        (['bag', './bag/'], 'all', 'for both bag and bag'),
+        (['bag', 'other'], 'x.csv', 'one file for 2 bags; give a folder'),
+        (['bag', 'other'], 'x.mcap', 'one file for 2 bags; give a folder'),
+        (['bag', 'nowhere'], 'all', 'nowhere: does not exist'),
+        (['bag', 'torn'], 'all', 'torn: no metadata.yaml'),
+        (['bag', 'other'], 'estimated', 'estimated/other: is no bag that could be replaced'),
+        (['bag'], 'bag', 'bag: would replace bag/bag.mcap, which is read'),
+        (['bag/bag.mcap'], 'bag', 'bag: would replace bag/bag.mcap, which is read'),
+        (['bag'], 'bag/bag.mcap', 'which is read'),
+        (['bag'], 'text.txt/e', 'text.txt is a file, not a folder'),
+        (['bag'], 'text.txt', 'text.txt: is no bag that could be replaced'),
+    ],
+)
+def test_places_are_checked_first(bag, tmp_path, monkeypatch, capsys, bags, out, said):
+    monkeypatch.chdir(tmp_path)
+    for name in ('deep/bag', 'other', 'torn'):
+        shutil.copytree(bag, name)
+    (tmp_path / 'torn' / 'metadata.yaml').unlink()
+    (tmp_path / 'text.txt').write_text('mine')
+    (tmp_path / 'estimated' / 'other').mkdir(parents=True)
+    (tmp_path / 'estimated' / 'other' / 'notes.txt').write_text('mine')
+    before = {p: p.read_bytes() for p in tmp_path.rglob('*') if p.is_file()}
+    assert estimate(*bags, '--out', out, '--overwrite') == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count('\n') == 1
+    assert {p: p.read_bytes() for p in tmp_path.rglob('*') if p.is_file()} == before
+
+
+def test_channels_may_have_spaces_between_them(bag, tmp_path):
+    rig = load_instrument('bench_rig')
+    names = [s.channel for s in rig.sensors if s.channel.startswith('actuator/')]
+    channels = ' , '.join(names)
+    assert estimate(bag, '--out', tmp_path / 'x.csv', '--channels', channels) == 0
