@@ -31,7 +31,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--select', nargs='+', default=[], metavar='KEY', help='only these runs of the file'
     )
-    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
+    parser.add_argument(
+        '--storage',
+        choices=('mcap', 'sqlite3'),
+        help='default: what the ending of BAG says, else mcap',
+    )
     parser.add_argument('--namespace', default='/instrument', help='of the topics written')
     parser.add_argument('--overwrite', action='store_true', help='replace bags that are there')
 
@@ -47,11 +51,25 @@ def run(args: argparse.Namespace) -> None:
 
     from tendon_ros.bags.importing import import_runs, run_keys
     from tendon_ros.bags.mapping import load_mapping
-    from tendon_ros.bags.writer import write_recording
+    from tendon_ros.bags.place import check_bag_output
+    from tendon_ros.bags.topics import check_namespace
+    from tendon_ros.bags.writer import FILE_STORAGE, write_recording
+    from tendon_ros.base.errors import OutputError
 
     mapping = load_mapping(args.mapping)
     keys = list(dict.fromkeys(args.select)) or run_keys(args.file, mapping)
     out = Path(args.out)
+    ending = FILE_STORAGE.get(out.suffix)
+    if ending is not None and args.storage not in (None, ending):
+        raise OutputError(
+            f'{out}: its ending says {ending}, --storage {args.storage}; leave out one of them'
+        )
+    if ending is not None and len(keys) > 1:
+        raise OutputError(f'{out}: one file for {len(keys)} runs; give a folder, or --select one')
+    check_namespace(args.namespace)
+    for key in keys:
+        place = out if len(keys) == 1 else out / key
+        check_bag_output(place, [Path(args.file)], overwrite=args.overwrite)
     console = Console(stderr=True)
     runs = import_runs(args.file, mapping, keys)
     for recording in track(
@@ -63,7 +81,7 @@ def run(args: argparse.Namespace) -> None:
             recording,
             out if len(keys) == 1 else out / recording.name,
             namespace=args.namespace,
-            storage=args.storage,
+            storage=args.storage or ending or 'mcap',
             overwrite=args.overwrite,
         )
         print(path, flush=True)

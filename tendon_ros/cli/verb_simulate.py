@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a setting of the trajectory, such as --set 'amplitude=5 deg'",
     )
     parser.add_argument(
-        '--seed', type=int, help='of the noise of the sensors; noise is off without'
+        '--seed', type=int, help='of the noise of the sensors, 0 or more; noise is off without'
     )
     parser.add_argument('--rate', type=float, default=500.0, help='recorded rows per second [Hz]')
     parser.add_argument('--engine', choices=('auto', 'compiled', 'plain'), default='auto')
@@ -45,6 +45,8 @@ def run(args: argparse.Namespace) -> None:
     """
     import time
 
+    from tendon_ros.bags.place import check_bag_output
+    from tendon_ros.bags.topics import check_namespace
     from tendon_ros.bags.writer import write_recording
     from tendon_ros.base.errors import RecordingError, TrajectoryError
     from tendon_ros.cli.progress import shown
@@ -60,8 +62,10 @@ def run(args: argparse.Namespace) -> None:
         return
     if args.out is None:
         raise RecordingError('--out: missing; name the bag to write')
-    if Path(args.out).exists() and not args.overwrite:
-        raise RecordingError(f'{args.out}: exists; give another path or --overwrite')
+    if args.seed is not None and args.seed < 0:
+        raise RecordingError(f'--seed {args.seed}: give 0 or more, or none for no noise')
+    check_namespace(args.namespace)
+    check_bag_output(Path(args.out), overwrite=args.overwrite)
     given = {}
     for text in args.set:
         key, equals, value = text.partition('=')

@@ -113,6 +113,32 @@ def test_import_makes_a_bag_a_run(foreign, tmp_path, capsys):
     assert f'{mapping}: channels: actuator/motor/position' in one_line(capsys)
 
 
+def test_import_takes_the_storage_that_the_ending_says(foreign, tmp_path, capsys):
+    file, mapping = foreign
+    words = ['import', str(file), '--mapping', str(mapping), '--select', '2', '--out']
+    assert main([*words, str(tmp_path / 'x.mcap'), '--storage', 'mcap']) == 0
+    assert main([*words, str(tmp_path / 'x.db3')]) == 0
+    assert (tmp_path / 'x.db3').read_bytes().startswith(b'SQLite')
+    assert main([*words, str(tmp_path / 'bag'), '--storage', 'sqlite3']) == 0
+    assert list((tmp_path / 'bag').glob('*.db3'))
+    capsys.readouterr()
+    assert main([*words, str(tmp_path / 'y.mcap'), '--storage', 'sqlite3']) == 2
+    assert 'its ending says mcap, --storage sqlite3' in one_line(capsys)
+    assert not (tmp_path / 'y.mcap').exists()
+
+
+def test_import_checks_all_places_first(foreign, tmp_path, capsys):
+    file, mapping = foreign
+    words = ['import', str(file), '--mapping', str(mapping), '--overwrite', '--out']
+    (tmp_path / 'all' / '2').mkdir(parents=True)
+    (tmp_path / 'all' / '2' / 'notes.txt').write_text('mine')
+    assert main([*words, str(tmp_path / 'all')]) == 2
+    assert 'is no bag that could be replaced' in one_line(capsys)
+    assert not (tmp_path / 'all' / '1').exists()
+    assert main([*words, str(tmp_path / 'x.mcap')]) == 2
+    assert 'one file for 2 runs' in one_line(capsys)
+
+
 def test_recover(bag, tmp_path, capsys):
     (bag / 'metadata.yaml').unlink()
     assert main(['info', str(bag)]) == 2
