@@ -43,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--up-to', default='20 kgf', help='largest tension of the table (default: %(default)s)'
     )
+    parser.add_argument('--overwrite', action='store_true', help='replace a file that is there')
 
 
 def run(args: argparse.Namespace) -> None:
@@ -50,23 +51,25 @@ def run(args: argparse.Namespace) -> None:
     Write the curve.
 
     :param args: parsed arguments.
-    :raises InstrumentError: on unusable arguments, or where the file cannot be written.
+    :raises InstrumentError: on unusable arguments.
+    :raises OutputError: where the file cannot be written.
     """
-    from tendon_ros.base.errors import InstrumentError
+    from tendon_ros.base.errors import OutputError
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.model.cable_identification import curve_from_table
     from tendon_ros.model.instrument_text import curve_text
 
+    check_output(args.out, [] if args.table is None else [args.table], overwrite=args.overwrite)
     if args.table is not None:
         curve = curve_from_table(args.table)
         comment = f'Tension of one cable against its elongation: tension test {args.table.name}.'
     else:
         curve, comment = _identified(args)
     try:
+        args.out.parent.mkdir(parents=True, exist_ok=True)
         args.out.write_text(curve_text(curve, comment), encoding='utf-8')
     except OSError as error:
-        raise InstrumentError(
-            f'{args.out}: {error.strerror}; choose a place to write to'
-        ) from None
+        raise OutputError(f'{args.out}: {error.strerror}; choose a place to write to') from None
     print(comment)
     print(
         f'{args.out}: {len(curve.elongation)} points, to {curve.tension[-1]:.4g} N at '
@@ -93,8 +96,15 @@ def _identified(args: argparse.Namespace) -> tuple[Curve, str]:
         arm=_positive('--arm', args.arm, 'm'),
         loops=args.loops,
     )
-    law = identified(test, _positive('--pretension', args.pretension, 'N'))
-    curve = tabulated(law, args.out.stem, _positive('--up-to', args.up_to, 'N'))
+    pretension = _positive('--pretension', args.pretension, 'N')
+    most = _positive('--up-to', args.up_to, 'N')
+    if most <= pretension:
+        raise InstrumentError(
+            f'--up-to: {args.up_to} does not exceed the pretension of {args.pretension}, and no '
+            'loop could be preloaded by such a table; give more'
+        )
+    law = identified(test, pretension)
+    curve = tabulated(law, args.out.stem, most)
     comment = f"""\
 Tension of one cable against its elongation. Identified, not measured, by
     tendon cable --forces '{args.forces}' --pretension '{args.pretension}' \\

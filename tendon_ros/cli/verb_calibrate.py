@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tendon_ros.cli.arguments import takes_bags
+from tendon_ros.cli.arguments import files_read, takes_bags
 
 HELP = 'fit a diagnosed instrument file to another machine of its kind, and say what differs'
 
@@ -20,6 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--out', type=Path, required=True, metavar='FILE.yaml', help='calibrated file to write'
     )
+    parser.add_argument('--overwrite', action='store_true', help='replace a file that is there')
 
 
 def run(args: argparse.Namespace) -> None:
@@ -29,15 +30,18 @@ def run(args: argparse.Namespace) -> None:
     :param args: parsed arguments.
     """
     from tendon_ros.bags.reader import read_recording
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import told
     from tendon_ros.diagnose.calibrate import calibrate
     from tendon_ros.model.instrument_file import load_instrument, save_instrument
     from tendon_ros.report.calibration_text import calibration_text
 
+    check_output(args.out, files_read(args), overwrite=args.overwrite)
     instrument = load_instrument(args.instrument)
     recordings = [read_recording(bag, args.namespace) for bag in args.bag]
     with told() as report:
         found = calibrate(recordings, instrument, report)
+    args.out.parent.mkdir(parents=True, exist_ok=True)
     save_instrument(found.instrument, args.out)
     print(calibration_text(found), end='')
     print(f'{args.out}: simulate, estimate and diagnose take it as it is')

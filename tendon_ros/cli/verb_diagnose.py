@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tendon_ros.cli.arguments import takes_bags
+from tendon_ros.cli.arguments import files_read, takes_bags
 
 HELP = 'say where the gap between recordings and model lies, and which effect causes it'
 
@@ -38,6 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='that it may take, about: the search for causes is cut short for that; 0: no limit; '
         'default: 10',
     )
+    parser.add_argument(
+        '--overwrite',
+        action='store_true',
+        help='replace files that no earlier diagnosis wrote, too',
+    )
 
 
 def run(args: argparse.Namespace) -> None:
@@ -51,6 +56,7 @@ def run(args: argparse.Namespace) -> None:
 
     from tendon_ros.bags.reader import read_recording
     from tendon_ros.base.errors import RecordingError
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import told
     from tendon_ros.diagnose.memory import Memory
     from tendon_ros.diagnose.patience import USUAL
@@ -66,11 +72,14 @@ def run(args: argparse.Namespace) -> None:
         raise RecordingError(f'--jobs {jobs}: give at least 1')
     if args.minutes is not None and not args.minutes >= 0.0:
         raise RecordingError(f'--minutes {args.minutes:g}: give a time, or 0 for no limit')
+    folder = Path(args.out)
+    read, replaced = files_read(args), args.overwrite or _diagnosed(folder)
+    for name in WRITTEN:
+        check_output(folder / name, read, overwrite=replaced)
     instrument = load_instrument(args.instrument)
     check_withheld(instrument, args.withhold)
     recordings = [read_recording(bag, args.namespace) for bag in args.bag]
-    folder = Path(args.out)
-    write(folder / 'README.txt', WHAT_IS_HERE)
+    folder.mkdir(parents=True, exist_ok=True)
     memory = Memory(folder / 'unfinished.json', recordings, instrument, args.withhold)
     with told() as report:
         outcome = diagnose(
@@ -86,11 +95,30 @@ def run(args: argparse.Namespace) -> None:
     write(folder / 'diagnosis.json', text + '\n')
     save_instrument(outcome.instrument, folder / 'instrument.yaml')
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
+    write(folder / 'README.txt', WHAT_IS_HERE)  # last, so that all that it names is there
     memory.forget()
     print(summary(outcome.diagnosis, outcome.evidence.moved))
     print(f'{folder / "report.html"}: the whole of it, with pictures')
 
 
+def _diagnosed(folder: Path) -> bool:
+    """Tell whether what lies in a folder comes from a diagnosis, finished or interrupted."""
+    import json
+
+    for name, keys in OWN.items():
+        try:
+            data = json.loads((folder / name).read_text(encoding='utf-8'))
+        except (OSError, ValueError):
+            continue
+        if isinstance(data, dict) and keys <= data.keys():
+            return True
+    return False
+
+
+#: what only a diagnosis leaves, and the keys by which it is known whatever version wrote it
+OWN = {'diagnosis.json': {'schema', 'verdict', 'causes'}, 'unfinished.json': {'key', 'models'}}
+#: all that it writes
+WRITTEN = (*OWN, 'instrument.yaml', 'report.html', 'README.txt')
 WHAT_IS_HERE = (
     'report.html: what was found, with pictures.\n'
     'diagnosis.json: the same for programs.\n'

@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument('--out', required=True, type=Path, metavar='FILE.csv', help='trajectory')
     parser.add_argument('--seconds', type=float, help='of the trajectory; default what is needed')
-    parser.add_argument('--jobs', type=int, default=2, help='threads')
+    parser.add_argument('--jobs', type=int, default=2, metavar='N', help='threads; default: 2')
     parser.add_argument('--overwrite', action='store_true', help='replace a file that is there')
 
 
@@ -62,18 +62,22 @@ def run(args: argparse.Namespace) -> None:
     Print what each channel and motion would tell, and write the best motion.
 
     :param args: parsed arguments.
-    :raises TrajectoryError: where the file cannot be written or the time makes no motion.
+    :raises OutputError: where the file cannot be written.
+    :raises TrajectoryError: where the time makes no motion.
     :raises EffectError: on what to tell apart.
-    :raises RecordingError: on channels or the diagnosis.
+    :raises RecordingError: on channels, threads or the diagnosis.
     """
-    from tendon_ros.base.errors import TrajectoryError
+    from tendon_ros.base.errors import RecordingError, TrajectoryError
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import shown
     from tendon_ros.identify.excitation import separating, together
     from tendon_ros.identify.excitation_motion import CYCLE
-    from tendon_ros.model.instrument_file import load_instrument
+    from tendon_ros.model.instrument_file import find_instrument, load_instrument
 
-    if args.out.exists() and not args.overwrite:
-        raise TrajectoryError(f'{args.out}: exists; give another path or --overwrite')
+    read = [find_instrument(args.instrument), *([args.diagnosis] if args.diagnosis else [])]
+    check_output(args.out, read, overwrite=args.overwrite)
+    if args.jobs < 1:
+        raise RecordingError(f'--jobs {args.jobs}: give at least 1')
     if args.seconds is not None and not 0.0 < args.seconds <= 3600.0:
         raise TrajectoryError(f'--seconds: {args.seconds:g}; give more than 0 and at most 3600')
     instrument = load_instrument(args.instrument)
@@ -217,7 +221,7 @@ def _write(trajectory: Trajectory, path: Path) -> None:
     """Write a trajectory as the CSV that ``load_trajectory`` reads."""
     import numpy as np
 
-    from tendon_ros.base.errors import TrajectoryError
+    from tendon_ros.base.errors import OutputError
 
     # rounding leaves negative zeros, which adding zero takes away
     lines = [','.join(['time_s', *(f'{motor}_rad' for motor in trajectory.motors)])]
@@ -226,6 +230,7 @@ def _write(trajectory: Trajectory, path: Path) -> None:
     ):
         lines.append(','.join([f'{time:.4f}', *(f'{angle:.8f}' for angle in row + 0.0)]))
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text('\n'.join(lines) + '\n', encoding='utf-8')
     except OSError as error:
-        raise TrajectoryError(f'{path}: {error.strerror}; give a path to write to') from None
+        raise OutputError(f'{path}: {error.strerror}; give a path to write to') from None

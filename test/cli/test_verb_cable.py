@@ -46,6 +46,7 @@ def test_tension_test(tmp_path):
         (['--forces', '1 deg'], "--forces: '1 deg' is no pair"),
         (['--forces', '1 deg: 1 N'], 'forces: 1 given'),
         (['--loops', '0'], '--loops: 0 must be at least 1'),
+        (['--up-to', '5 N'], '--up-to: 5 N does not exceed the pretension of 5 N'),
         (['--table', 'none.csv'], 'none.csv: cannot be read'),
     ],
 )
@@ -57,5 +58,25 @@ def test_mistakes_are_one_line(tmp_path, capsys, given, said):
 
 
 def test_nowhere_to_write(tmp_path, capsys):
-    assert main(['cable', '--out', str(tmp_path / 'none' / 'x.yaml')]) == 2
-    assert 'choose a place' in capsys.readouterr().err
+    (tmp_path / 'file').write_text('')
+    assert main(['cable', '--out', str(tmp_path / 'file' / 'x.yaml')]) == 2
+    assert 'is a file, not a folder' in capsys.readouterr().err
+
+
+def test_a_file_is_replaced_only_where_that_is_allowed(tmp_path, capsys):
+    out = tmp_path / 'new' / 'x.yaml'
+    assert main(['cable', '--out', str(out)]) == 0
+    out.write_text('mine')
+    assert main(['cable', '--out', str(out)]) == 2
+    assert out.read_text() == 'mine'
+    assert '--overwrite' in capsys.readouterr().err
+    assert main(['cable', '--out', str(out), '--overwrite']) == 0
+    assert 'elongation' in out.read_text()
+
+
+def test_the_table_that_is_read_is_not_replaced(tmp_path, capsys):
+    table = tmp_path / 'test.csv'
+    table.write_text('elongation_mm,force_N\n0,0\n0.5,5\n1,20\n')
+    assert main(['cable', '--table', str(table), '--out', str(table), '--overwrite']) == 2
+    assert 'which is read' in capsys.readouterr().err
+    assert table.read_text().startswith('elongation_mm')

@@ -40,3 +40,19 @@ def test_a_bag_of_another_rig_is_refused(files, tmp_path, capsys):
     error = capsys.readouterr().err.strip().splitlines()[-1]
     assert 'does not fit' in error
     assert not (tmp_path / 'x.yaml').exists()
+
+
+def test_files_of_the_user_are_kept(files, tmp_path, capsys, monkeypatch):
+    bag, first = files
+    monkeypatch.setattr('tendon_ros.diagnose.calibrate.calibrate', pytest.fail)
+    (tmp_path / 'mine.yaml').write_text('mine')
+    for out, more, said in (
+        (first, ['--overwrite'], 'which is read'),
+        (tmp_path / 'mine.yaml', [], 'exists'),
+        (first / 'x.yaml', [], 'is a file, not a folder'),
+    ):
+        words = ['calibrate', str(bag), '--instrument', str(first), '--out', str(out), *more]
+        assert main(words) == 2
+        assert said in capsys.readouterr().err
+    assert first.read_text().startswith('base')
+    assert (tmp_path / 'mine.yaml').read_text() == 'mine'

@@ -115,3 +115,55 @@ def test_an_interrupt_is_no_answer_and_no_traceback(bag, tmp_path, monkeypatch, 
     assert status not in (0, 2)
     assert 'Traceback' not in capsys.readouterr().err
     assert not (tmp_path / 'x/diagnosis.json').exists()
+
+
+def stops_where_it_would_diagnose(monkeypatch):
+    def stopped(*args, **kwargs):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr('tendon_ros.diagnose.session.diagnose', stopped)
+
+
+def test_what_a_user_made_is_kept(bag, tmp_path, monkeypatch, capsys):
+    stops_where_it_would_diagnose(monkeypatch)
+    out = tmp_path / 'work'
+    out.mkdir()
+    for name in ('README.txt', 'instrument.yaml', 'diagnosis.json'):
+        file = out / name
+        file.write_text('{"mine": 1}')
+        status, _, error = said(capsys, bag, *BODY, '--out', out)
+        assert (status, f'{file}: exists' in error) == (2, True)
+        assert file.read_text() == '{"mine": 1}'
+        status, _, _ = said(capsys, bag, *BODY, '--out', out, '--overwrite')
+        assert status == 1  # it got as far as diagnosing
+        file.unlink()
+
+
+def test_the_instrument_that_is_read_is_kept(bag, tmp_path, monkeypatch, capsys):
+    stops_where_it_would_diagnose(monkeypatch)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'instrument.yaml').write_text('base: single_body\n')
+    words = [bag, '--instrument', 'instrument.yaml', '--out', '.', '--overwrite']
+    status, _, error = said(capsys, *words)
+    assert (status, 'which is read' in error) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ('name', 'left'),
+    [
+        ('diagnosis.json', {'schema': 1, 'verdict': 'no_gap', 'causes': []}),
+        ('unfinished.json', {'key': '', 'models': [], 'weighed': None}),
+    ],
+)
+def test_its_own_files_are_replaced_unasked(bag, tmp_path, monkeypatch, capsys, name, left):
+    stops_where_it_would_diagnose(monkeypatch)
+    (tmp_path / name).write_text(json.dumps(left))
+    (tmp_path / 'README.txt').write_text('from an earlier version')
+    status, _, _ = said(capsys, bag, *BODY, '--out', tmp_path)
+    assert status == 1
+
+
+def test_a_failure_leaves_no_word_of_files_that_are_not_there(bag, tmp_path, monkeypatch, capsys):
+    stops_where_it_would_diagnose(monkeypatch)
+    assert said(capsys, bag, *BODY, '--out', tmp_path / 'x')[0] == 1
+    assert not (tmp_path / 'x' / 'README.txt').exists()

@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from tendon_ros.base.errors import EffectError, RecordingError, TrajectoryError
+from tendon_ros.base.errors import EffectError, OutputError, RecordingError, TrajectoryError
 from tendon_ros.cli import verb_excite
 from tendon_ros.diagnose.result import (
     Candidate,
@@ -103,6 +103,7 @@ def test_other_causes_of_a_diagnosis_hold(tmp_path):
         (['--separate', 'pretension@cable_x'], EffectError, 'no place'),
         (['--separate', 'pretension@cable_12', '--channels', 'x'], RecordingError, "no 'x'"),
         (['--separate', 'pretension@cable_12', '--seconds', '0'], TrajectoryError, '--seconds'),
+        (['--separate', 'pretension@cable_12', '--jobs', '-3'], RecordingError, '--jobs -3'),
         (['--from', 'nowhere.json'], RecordingError, 'nowhere.json'),
     ],
 )
@@ -115,6 +116,13 @@ def test_mistakes(tmp_path, words, error, match):
 def test_a_file_is_not_replaced(tmp_path):
     out = tmp_path / 'x.csv'
     out.write_text('mine')
-    with pytest.raises(TrajectoryError, match='exists'):
+    with pytest.raises(OutputError, match='exists'):
         run('--separate', 'pretension@cable_m1', '--out', out)
     assert out.read_text() == 'mine'
+
+
+def test_where_nothing_can_be_written_nothing_is_computed(tmp_path, monkeypatch):
+    (tmp_path / 'file').write_text('')
+    monkeypatch.setattr('tendon_ros.identify.excitation.separating', pytest.fail)
+    with pytest.raises(OutputError, match='is a file, not a folder'):
+        run('--separate', 'pretension@cable_m1', '--out', tmp_path / 'file' / 'x.csv')
