@@ -33,7 +33,6 @@ from datetime import datetime, UTC
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import pint
 from pydantic import (
     BaseModel,
     ConfigDict,
@@ -45,55 +44,30 @@ from pydantic import (
 import yaml
 
 from tendon_ros.bags.topics import place_of
-from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.errors import listed, RecordingError, TendonError
+from tendon_ros.base.quantity import factor
 from tendon_ros.base.recording import FIELD_UNITS
 from tendon_ros.base.resources import installed, installed_names
-
-_UNITS = pint.UnitRegistry()
-#: pint takes a count for a radian; an angle has to name one of these
-_ANGLES = frozenset(
-    {
-        *('radian', 'milliradian', 'degree', 'turn', 'arcminute', 'arcsecond'),
-        *('revolutions_per_minute', 'revolutions_per_second'),
-    }
-)
+from tendon_ros.base.yaml_keys import UniqueKeys
 
 Column = Annotated[int, Field(ge=0, strict=True)] | Annotated[str, Field(min_length=1)]
 
 
-def _straight(text: str, target: str) -> str:
-    """Return what to write for a straight axis, if the unit is one of a straight axis."""
-    turned = f'{text} * rad/m' if target.startswith('rad') else f'{text} * m'
+def _checked(text: str, target: str) -> None:
+    """Complain of a unit that is of another kind; say how a straight axis writes its own."""
     try:
-        _UNITS.parse_expression(turned).to(target)
-    except Exception:  # whatever pint raises, it is no unit of a straight axis
-        return ''
-    return f'; on a straight axis let 1 rad stand for 1 m: {turned!r}'
+        factor(text, target)
+    except ValueError as error:
+        turned = f'{text} * rad/m' if target.startswith('rad') else f'{text} * m'
+        try:
+            factor(turned, target)
+        except ValueError:
+            raise error from None
+        raise ValueError(f'{error}: write {turned!r}') from None
 
 
-def factor(text: str, target: str) -> float:
-    """
-    Return what one of a unit is in another.
-
-    :param text: a pint expression, for instance ``turn / 4096`` or ``3.98e-5 N m``.
-    :param target: for instance ``rad``.
-    :return: the factor.
-    :raises ValueError: where the unit is unknown or of another kind.
-    """
-    try:
-        quantity = _UNITS.Quantity(1.0, 'dimensionless') * _UNITS.parse_expression(text)
-        value = float(quantity.to(target).magnitude)
-        names = {str(name) for name, _ in quantity.unit_items()}
-    except Exception as error:
-        # pint raises from tokenizer errors to its own kinds, all of which mean the same here.
-        raise ValueError(
-            f'{text!r} is not a unit that converts to {target}{_straight(text, target)}'
-        ) from error
-    if target.startswith('rad') and not names & _ANGLES:
-        raise ValueError(f'{text!r} names no angle; write, say, turn / 4096')
-    if not 0.0 < abs(value) < float('inf'):
-        raise ValueError(f'{text!r} is {value} {target}')
-    return value
+class _Loader(UniqueKeys, yaml.SafeLoader):
+    """The usual loader, made to refuse a key given twice."""
 
 
 class _Strict(BaseModel):
@@ -125,7 +99,7 @@ class Time(_Strict):
     @field_validator('unit')
     @classmethod
     def _is_time(cls, value: str) -> str:
-        factor(value, 's')
+        _checked(value, 's')
         return value
 
     @field_validator('rate')
@@ -187,7 +161,7 @@ class Mapping(_Strict):
         for name, source in value.items():
             try:
                 place_of(name)
-                factor(source.unit, unit_of(name))
+                _checked(source.unit, unit_of(name))
             except (RecordingError, ValueError) as error:
                 raise ValueError(f'{name}: {error}') from error
         if not any(name.startswith('actuator/') for name in value):
@@ -221,9 +195,9 @@ def load_mapping(path: Path | str) -> Mapping:
     """
     try:
         file = installed(path, 'imports') or Path(path)
-        data: Any = yaml.safe_load(file.read_text(encoding='utf-8'))
+        data: Any = yaml.load(file.read_text(encoding='utf-8'), _Loader)
         if not isinstance(data, dict):
-            raise RecordingError(f'{path}: no fields; a mapping needs format, time and channels')
+            raise TendonError('no fields; a mapping needs format, time and channels')
         return Mapping.model_validate(data)
     except OSError as error:
         raise RecordingError(
@@ -235,6 +209,8 @@ def load_mapping(path: Path | str) -> Mapping:
         raise RecordingError(f'{path}: not YAML ({detail}); mend the line') from error
     except ValidationError as error:
         raise RecordingError(f'{path}: {_sentence(error)}') from error
+    except TendonError as error:
+        raise RecordingError(f'{path}: {error}') from None
 
 
 def _sentence(error: ValidationError) -> str:

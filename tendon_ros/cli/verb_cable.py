@@ -117,7 +117,7 @@ with each cable preloaded to {law.pretension:g} N and so by {1e3 * law.preload:.
 
 def _positive(option: str, text: str, unit: str) -> float:
     from tendon_ros.base.errors import InstrumentError
-    from tendon_ros.model.quantity import parsed
+    from tendon_ros.base.quantity import parsed
 
     try:
         value = parsed(text, unit)

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
 from tendon_ros.base.errors import InstrumentError
+from tendon_ros.base.quantity import parsed
 from tendon_ros.model.instrument import Curve
 from tendon_ros.model.instrument_build import curve
 from tendon_ros.model.instrument_schema import CurveSection
-from tendon_ros.model.quantity import parsed
 
 FloatArray = NDArray[np.float64]
 

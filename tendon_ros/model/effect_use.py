@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from tendon_ros.base.errors import EffectError, listed
+from tendon_ros.base.quantity import parsed, written
 from tendon_ros.effects import find
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
-from tendon_ros.model.quantity import parsed, written
 
 
 def checked_use(

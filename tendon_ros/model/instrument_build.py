@@ -8,6 +8,7 @@ from dataclasses import replace
 import math
 
 from tendon_ros.base.errors import EffectError, InstrumentError
+from tendon_ros.base.quantity import parsed
 from tendon_ros.base.recording import channel_name
 from tendon_ros.effects import find
 from tendon_ros.model.effect_use import checked_use
@@ -35,7 +36,6 @@ from tendon_ros.model.instrument_schema import (
     MotorSection,
     Section,
 )
-from tendon_ros.model.quantity import parsed
 from tendon_ros.model.tolerance import GUESSED, read_stated, Stated, without_tolerance
 
 #: unit of a contact's damping, by its law

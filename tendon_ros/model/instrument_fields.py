@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator
 
-from tendon_ros.model.quantity import parsed
+from tendon_ros.base.quantity import parsed
 from tendon_ros.model.tolerance import read_stated, read_tolerance, Stated
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from tendon_ros.base.quantity import column_text, readable_unit, written
 from tendon_ros.effects import find
 from tendon_ros.model.instrument import (
     Contact,
@@ -21,7 +22,6 @@ from tendon_ros.model.instrument import (
     Sensor,
 )
 from tendon_ros.model.instrument_build import DAMPING_UNITS
-from tendon_ros.model.quantity import column_text, readable_unit, written
 from tendon_ros.model.tolerance import GUESSED, written_stated, written_tolerance
 
 Document = dict[str, Any]

@@ -13,7 +13,7 @@ from decimal import Decimal
 import math
 import re
 
-from tendon_ros.model.quantity import parsed, written
+from tendon_ros.base.quantity import parsed, written
 
 GUESSED = 'guessed'
 _SIGN = re.compile(r'\+/?-|±')

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any, get_args, get_origin, get_type_hints
 
 from tendon_ros.base.errors import listed, TrajectoryError
+from tendon_ros.base.quantity import parsed, written
 from tendon_ros.model import trajectory_profiles
-from tendon_ros.model.quantity import parsed, written
 from tendon_ros.model.trajectory import load_trajectory, Trajectory
 from tendon_ros.model.trajectory_setting import Setting
 

@@ -12,32 +12,12 @@ from typing import Any
 
 import yaml
 
-from tendon_ros.base.errors import InstrumentError
+from tendon_ros.base.errors import InstrumentError, TendonError
+from tendon_ros.base.yaml_keys import UniqueKeys
 
 
-class _TextLoader(yaml.BaseLoader):
+class _TextLoader(UniqueKeys, yaml.BaseLoader):
     """PyYAML's loader that converts nothing, made to refuse a key given twice."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """
-        Return a mapping.
-
-        :param node: the parsed node.
-        :param deep: whether to construct its values at once.
-        :return: the mapping, keys as text.
-        :raises InstrumentError: on a key given twice, or that is no plain text.
-        """
-        seen: set[str] = set()
-        for key, _ in node.value:
-            line = key.start_mark.line + 1
-            if not isinstance(key, yaml.ScalarNode):
-                raise InstrumentError(f'line {line}: a key is not plain text; write `name: value`')
-            if key.value in seen:
-                raise InstrumentError(
-                    f'line {line}: {key.value}: is given twice; keep one of the two'
-                )
-            seen.add(key.value)
-        return super().construct_mapping(node, deep)
 
 
 def read_mapping(path: Path) -> dict[str, Any]:
@@ -75,7 +55,7 @@ def mapping_of(text: str, path: Path) -> dict[str, Any]:
         ) from None
     except yaml.YAMLError as error:
         raise InstrumentError(f'{path}: {str(error).splitlines()[0]}; mend the YAML') from None
-    except InstrumentError as error:
+    except TendonError as error:
         raise InstrumentError(f'{path}: {error}') from None
     if not isinstance(document, dict):
         raise InstrumentError(f'{path}: holds no `key: value` pairs at its top; give some')

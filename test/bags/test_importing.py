@@ -7,7 +7,7 @@ import yaml
 
 from tendon_ros.bags.export import export_csv
 from tendon_ros.bags.importing import import_runs, run_keys
-from tendon_ros.bags.mapping import factor, load_mapping
+from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
 from tendon_ros.base.errors import RecordingError
@@ -213,6 +213,10 @@ def with_position(**fields):
     return changed(channels={'actuator/motor/position': {**POSITION, **fields}})
 
 
+def with_effort(**fields):
+    return changed(channels={'actuator/motor/effort': {'column': 1, **fields}})
+
+
 @pytest.mark.parametrize(
     ('data', 'words'),
     [
@@ -226,13 +230,19 @@ def with_position(**fields):
         (changed(time={}), 'either a column or a rate'),
         (changed(time={'column': 0, 'rate': '1 Hz'}), 'either a column or a rate'),
         (changed(time={'rate': '-5 Hz'}), 'negative'),
-        (changed(time={'rate': '5 m'}), 'converts to Hz'),
+        (changed(time={'rate': '5 m'}), 'is not in Hz'),
+        (changed(time={'rate': '6000 rpm'}), 'its angle has no place there'),
         (changed(channels={}), 'channels'),
         (changed(channels={'motor/position': POSITION}), 'no topic carries it'),
         (changed(channels={'load_cell/force': {'column': 1, 'unit': 'N'}}), 'of the motors'),
         (with_position(unit='count'), 'names no angle'),
-        (with_position(unit='N m'), 'converts to rad'),
-        (with_position(unit='nonsense'), 'converts to rad'),
+        (with_position(unit='N m'), 'is not in rad'),
+        (with_position(unit='nonsense'), 'does not exist'),
+        (with_position(unit='mm'), "let 1 rad stand for 1 m): write 'mm * rad/m'"),
+        (with_effort(unit='N m/deg'), 'its angle has no place there'),
+        ('format: csv\ntime: {rate: 1 Hz}\nformat: npz\n', 'line 3: format: is given twice'),
+        ('time: {rate: 1 Hz, rate: 2 Hz}\n', 'line 1: rate: is given twice'),
+        ('[a]: b\n', 'line 1: a key is not plain text'),
         (with_position(sign=2), 'sign'),
         (with_position(scale=0), 'must not be 0'),
         (with_position(scale='fast'), 'scale'),
@@ -296,15 +306,6 @@ def test_a_missing_file_and_a_missing_mapping(tmp_path):
         imported(tmp_path, tmp_path / 'x.npz', MAPPING)
     with pytest.raises(RecordingError, match='cannot be read'):
         load_mapping(tmp_path / 'none.yaml')
-
-
-def test_units():
-    assert factor('turn / (4096 * 35)', 'rad') == pytest.approx(2 * np.pi / (4096 * 35))
-    assert factor('3.9811e-5 N m', 'N m') == pytest.approx(3.9811e-5)
-    assert factor('rpm', 'rad/s') == pytest.approx(2 * np.pi / 60)
-    for text in ('1', 'count', '', 'N', 'rad/s'):
-        with pytest.raises(ValueError, match=r'names no angle|converts'):
-            factor(text, 'rad')
 
 
 SERVO = {

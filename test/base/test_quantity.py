@@ -1,13 +1,14 @@
 """Quantities with units are read exactly, written readably and refused with the mend."""
 
 import math
+import re
 
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 
+from tendon_ros.base.quantity import EXAMPLES, factor, parsed, readable_unit, written
 from tendon_ros.effects import catalogue
-from tendon_ros.model.quantity import EXAMPLES, parsed, readable_unit, written
 
 finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e12, max_value=1e12)
 
@@ -43,8 +44,10 @@ def test_reads_units(text, unit, value):
         ('nan m', 'm', 'not finite'),
         ('-inf', 'm', 'not finite'),
         ('1e400 m', 'm', 'too large'),
-        ('5 %', 'rad', "not in rad; write a quantity such as '17 deg'"),
-        ('5 rad/s', 'Hz', 'not in Hz'),
+        ('5 %', 'rad', "not in rad (it names no angle); write a quantity such as '17 deg'"),
+        ('5 rad/s', 'Hz', 'not in Hz (its angle has no place there)'),
+        ('5 N m/deg', 'N m', 'its angle has no place there'),
+        ('5 N', 'N m', 'on a straight axis'),
         ('1 s^-1', 'rad/s', 'not in rad/s'),
         ('5 deg', '1', 'not a plain number'),
         ('', 'm', 'not a number with a unit'),
@@ -55,6 +58,47 @@ def test_reads_units(text, unit, value):
 def test_refuses_with_the_mend(text, unit, said):
     with pytest.raises(ValueError, match='write a') as error:
         parsed(text, unit)
+    assert said in str(error.value)
+    assert '\n' not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ('text', 'unit', 'value'),
+    [
+        ('turn / (4096 * 35)', 'rad', 2 * math.pi / (4096 * 35)),
+        ('3.9811e-5 N m', 'N m', 3.9811e-5),
+        ('mA * 0.08 N m/A', 'N m', 8e-5),
+        ('percent * 2.5 N m', 'N m', 0.025),
+        ('rpm', 'rad/s', 2 * math.pi / 60),
+        ('mm * rad/m', 'rad', 1e-3),
+        ('turn / (4096 * count)', 'rad', 2 * math.pi / 4096),
+        ('-5 Hz', 'Hz', -5.0),
+    ],
+)
+def test_a_unit_may_have_numbers_in_it(text, unit, value):
+    assert factor(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ('text', 'unit', 'said'),
+    [
+        ('6000 rpm', 'Hz', 'not in Hz (its angle has no place there)'),
+        ('N m/deg', 'N m', 'its angle has no place there'),
+        ('count', 'rad', 'names no angle'),
+        ('1', 'rad', 'names no angle'),
+        ('', 'rad', 'names no angle'),
+        ('Hz', 'rad/s', 'names no angle'),
+        ('N', 'rad', 'not in rad'),
+        ('0 rad', 'rad', 'is 0 rad'),
+        ('1e400 rad', 'rad', 'is inf rad'),
+        ('turn / 0', 'rad', 'does not exist'),
+        ('turn (', 'rad', 'does not exist'),
+        ('nonsense', 'rad', 'does not exist'),
+    ],
+)
+def test_a_unit_of_another_kind_is_refused(text, unit, said):
+    with pytest.raises(ValueError, match='^' + re.escape(repr(text))) as error:
+        factor(text, unit)
     assert said in str(error.value)
     assert '\n' not in str(error.value)
 

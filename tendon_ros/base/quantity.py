@@ -7,7 +7,8 @@ A number is converted as a decimal, so ``0.7 mm`` is exactly the float ``0.0007`
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from decimal import Decimal
 from functools import cache
 import math
@@ -67,12 +68,31 @@ def parsed(text: object, unit: str) -> float:
     if not own and unit != '1':
         raise ValueError(f'{written_text!r} has no unit; {mend}')
     try:
-        factor = _factor(own, unit)
+        one = _factor(own, unit)
     except ValueError as error:
         raise ValueError(f'{written_text!r} {error}; {mend}') from None
-    value = float(Decimal(number) * factor)
+    value = float(Decimal(number) * one)
     if not math.isfinite(value):
         raise ValueError(f'{written_text!r} is too large; {mend}')
+    return value
+
+
+def factor(text: str, unit: str) -> float:
+    """
+    Return what one of a unit is in SI units, where the unit may have numbers in it.
+
+    :param text: such as ``turn / 4096``, ``3.98e-5 N m`` or ``mA * 0.08 N m/A``.
+    :param unit: the SI unit asked for.
+    :return: the factor, finite and not 0.
+    :raises ValueError: on anything else; angles follow the rule of :func:`parsed`.
+    """
+    unit = _normal(unit)
+    try:
+        value = float(_converted(_reduced_expression(text), unit))
+    except ValueError as error:
+        raise ValueError(f'{text!r} {error}') from None
+    if not 0.0 < abs(value) < math.inf:
+        raise ValueError(f'{text!r} is {value:g} {unit}; give what one step of the number is')
     return value
 
 
@@ -142,17 +162,51 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-@cache
-def _reduced(unit: str) -> tuple[float, Mapping[str, int | float], float]:
-    """Return factor to base units, dimensions, and the power of the radian in a unit."""
-    import pint
+#: factor to base units, dimensions without the angle, and the power of the radian
+_Reduced = tuple[float, Mapping[str, int | float], float]
 
+
+@cache
+def _reduced(unit: str) -> _Reduced:
+    """Return a unit without numbers in it, reduced."""
     if unit in {'', '1'}:
         return 1.0, {}, 0.0
     registry = _registry()
+    with _explained(unit):
+        return _split(*registry.get_base_units(registry.parse_units(_known_to_pint(unit))))
+
+
+@cache
+def _reduced_expression(text: str) -> _Reduced:
+    """Return a unit that may have numbers in it, reduced."""
+    registry = _registry()
+    with _explained(text):
+        one = registry.Quantity(1.0, 'dimensionless') * registry.parse_expression(
+            _known_to_pint(text)
+        )
+        base = one.to_base_units()
+        return _split(base.magnitude, base.units)
+
+
+def _known_to_pint(unit: str) -> str:
+    return unit.replace('·', '*').replace('%', 'percent')
+
+
+def _split(factor: float, base: Any) -> _Reduced:
+    """Return a factor and a base unit with the radian apart."""
+    powers = dict(base._units)
+    radian = float(powers.pop('radian', 0))
+    powers = {u: p for u, p in powers.items() if _registry().get_dimensionality(u)}  # no counts
+    return float(factor), powers, radian
+
+
+@contextmanager
+def _explained(unit: str) -> Iterator[None]:
+    """Turn all that pint raises on what is no unit into one sentence."""
+    import pint
+
     try:
-        own = registry.parse_units(unit.replace('·', '*').replace('%', 'percent'))
-        factor, base = registry.get_base_units(own)
+        yield
     except (
         pint.PintError,
         ArithmeticError,
@@ -163,23 +217,35 @@ def _reduced(unit: str) -> tuple[float, Mapping[str, int | float], float]:
         ValueError,
     ):
         raise ValueError(f'has a unit that does not exist, {unit!r}') from None
-    powers = dict(base._units)
-    radian = float(powers.pop('radian', 0))
-    return float(factor), powers, radian
 
 
 @cache
 def _factor(own: str, unit: str) -> Decimal:
     """Return what a number in one unit is multiplied by to be in the other, which is SI."""
-    factor, powers, radian = _reduced(own)
+    return _converted(_reduced(own), unit)
+
+
+def _converted(reduced: _Reduced, unit: str) -> Decimal:
+    """Return what one of a reduced unit is in another, which is SI."""
+    one, powers, radian = reduced
     _, wanted, wanted_radian = _reduced(unit)
     # An angle is a ratio: N*m*s is as good as N*m*s/rad. But 5 is no angle, and rad/s no rate.
     same = radian == wanted_radian or (radian == 0 and wanted != {} and unit != 'rad/s')
     if powers != wanted or not same:
-        turning = 'rad' in unit or unit in {'N*m', 'kg*m^2'}
-        straight = turning and {**powers, 'meter': 0} == {**wanted, 'meter': 0} and powers != {}
-        hint = ' (on a straight axis, let 1 rad stand for 1 m)' if straight else ''
+        hint = _hint(powers, wanted, radian, unit)
         raise ValueError(f'is not in {unit}{hint}' if unit != '1' else 'is not a plain number')
     # Powers of ten come out of pint with rounding errors in the last bit.
-    short = float(f'{factor:.12g}')
-    return Decimal(repr(short if abs(short - factor) <= 4e-16 * abs(factor) else factor))
+    short = float(f'{one:.12g}')
+    return Decimal(repr(short if abs(short - one) <= 4e-16 * abs(one) else one))
+
+
+def _hint(
+    powers: Mapping[str, int | float], wanted: Mapping[str, int | float], radian: float, unit: str
+) -> str:
+    """Return what may be wrong with a unit, in parentheses; empty where nobody knows."""
+    if powers == wanted:
+        return ' (its angle has no place there)' if radian else ' (it names no angle)'
+    turning = 'rad' in unit or unit in {'N*m', 'kg*m^2'}
+    if turning and powers and {**powers, 'meter': 0} == {**wanted, 'meter': 0}:
+        return ' (on a straight axis, let 1 rad stand for 1 m)'
+    return ''
