@@ -170,26 +170,28 @@ def _run(path: Path, arrays: Mapping[str, Any], key: str, runs: Runs) -> Table:
     return Table(key, {str(i): table[:, i] for i in range(table.shape[1])}, header)
 
 
-#: what may stand between the cells of a CSV file, the most usual first
-DELIMITERS = ',;\t'
+#: what may stand between the cells of a CSV file; commas, which are decimal signs too, last
+DELIMITERS = ';\t,'
+#: rows that tell what it is
+LOOKED_AT = 20
 
 
 def _read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
     """
     Return the columns of a CSV file, and what is wrong with those that hold more than numbers.
 
-    They are named by the first line where that is not numbers. Between semicolons, a comma is
-    taken for the decimal sign.
+    They are named by the first line where a cell of it is anything but empty or a number. Between
+    semicolons or tabs, a comma is taken for the decimal sign.
     """
     with path.open(newline='', encoding='utf-8-sig') as stream:
         lines = [line for line in stream if line.strip() and not line.startswith('#')]
     if not lines:
         raise ValueError('it is empty')
-    delimiter = max(DELIMITERS, key=lines[0].count)
+    delimiter = _delimiter(lines[:LOOKED_AT])
     rows = list(csv.reader(lines, delimiter=delimiter))
-    comma = ',' if delimiter == ';' else ''
+    comma = '' if delimiter == ',' else ','
     try:
-        [_number(cell, comma) for cell in rows[0]]
+        [_number(cell, comma) for cell in rows[0] if cell.strip()]
         names, first = [str(i) for i in range(len(rows[0]))], 0
     except ValueError:
         names, first = [cell.strip() for cell in rows[0]], 1
@@ -208,6 +210,16 @@ def _read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
                     fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
                     faults.setdefault(names[j], fault)
     return {name: table[:, j] for j, name in enumerate(names)}, faults
+
+
+def _delimiter(lines: Sequence[str]) -> str:
+    """Return what stands between the cells: what makes rows of one length, longer than one."""
+    present = [d for d in DELIMITERS if d in lines[0]]
+    for delimiter in present:
+        lengths = {len(row) for row in csv.reader(lines, delimiter=delimiter)}
+        if len(lengths) == 1 and lengths != {1}:
+            return delimiter
+    return present[0] if present else ','
 
 
 def _read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:

@@ -9,6 +9,7 @@ from tendon_ros.bags.export import export_csv
 from tendon_ros.bags.importing import import_runs, run_keys
 from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.bags.reader import read_recording
+from tendon_ros.bags.tables import read_tables
 from tendon_ros.bags.writer import write_recording
 from tendon_ros.base.errors import RecordingError
 
@@ -147,6 +148,32 @@ def test_a_csv_without_names_and_a_rate(tmp_path):
     (run,) = imported(tmp_path, tmp_path / 'x.csv', data)
     np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
     assert run.epoch_ns == 1_577_836_800 * 10**9
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        '0,1.5,\n0.1,2.5,3\n',
+        ',1.5,2\n0.1,2.5,3\n',
+        '0,000;1,5000;2,0000\n0,100;2,5000;3,0000\n',
+        '0,000\t1,5000\t2,0000\n0,100\t2,5000\t3,0000\n',
+        '0\t1.5\t2\n0.1\t2.5\t3\n',
+        '0.0,1.5,2\n0.1,2.5,3\n',
+    ],
+)
+def test_a_first_row_without_names_is_a_sample(tmp_path, text):
+    (tmp_path / 'x.csv').write_text(text)
+    table = read_tables(tmp_path / 'x.csv', 'csv', None)['x']()
+    assert list(table.columns) == ['0', '1', '2']
+    assert table.columns['1'].tolist() == [1.5, 2.5]
+
+
+@pytest.mark.parametrize('text', ['t,p; q\n0,1\n1,2\n', '"t;";"p; q"\n0;1\n1;2\n', 't\n0\n1\n'])
+def test_names_may_hold_what_stands_between_cells_elsewhere(tmp_path, text):
+    (tmp_path / 'x.csv').write_text(text)
+    table = read_tables(tmp_path / 'x.csv', 'csv', None)['x']()
+    assert table.names[1:] in (('p; q',), ())
+    assert table.columns[table.names[0]].tolist() == [0.0, 1.0]
 
 
 def test_our_own_export_imports(npz, tmp_path):
