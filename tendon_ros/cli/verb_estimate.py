@@ -1,4 +1,9 @@
-"""``tendon estimate``: the operating force from a bag, the numbers that the live node gives."""
+"""
+``tendon estimate``: the operating force from a bag.
+
+With the same method these are the numbers that the live node gives. The node's default is another
+one, which needs no torques.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,8 @@ from pathlib import Path
 
 from tendon_ros.cli.arguments import files_read, takes_bags
 
+#: needs no contact, and so fits every rig whose torques were recorded
+METHOD = 'static_balance'
 #: endings of outputs that hold one recording
 ONE_FILE = ('.csv', '.mcap', '.db3')
 
@@ -28,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--method',
-        default='static_balance',
-        help='static_balance (default), contact_angle or dynamic; see docs/estimation.md',
+        default=METHOD,
+        help=f"{METHOD} (default), contact_angle (the node's) or dynamic; see docs/estimation.md",
     )
     parser.add_argument(
         '--channels',

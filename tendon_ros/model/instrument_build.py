@@ -199,7 +199,7 @@ def _effect_tolerances(use: EffectSection) -> Iterator[tuple[str, float]]:
 
 
 def _control(section: ControlSection) -> tuple[float, bool]:
-    """Return the controllers' period [s] and whether they act continuously."""
+    """Return the period of controllers or set-points [s], and whether the former have no ticks."""
     period = Instrument.control_period if section.period is None else section.period
     if section.rate in {'', 'continuous'}:
         return period, section.rate == 'continuous'

@@ -1,15 +1,18 @@
 """``tendon estimate`` writes where it was told to, and checks that before it reads a bag."""
 
+from pathlib import Path
 import shutil
 
 import pytest
 
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
-from tendon_ros.cli.main import main
+from tendon_ros.cli.main import build_parser, main
+from tendon_ros.estimate import METHODS
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.nodes import estimator
 
 
 @pytest.fixture(scope='module')
@@ -91,3 +94,17 @@ def test_channels_may_have_spaces_between_them(bag, tmp_path):
     names = [s.channel for s in rig.sensors if s.channel.startswith('actuator/')]
     channels = ' , '.join(names)
     assert estimate(bag, '--out', tmp_path / 'x.csv', '--channels', channels) == 0
+
+
+def test_the_page_and_the_help_say_what_is_taken_without_a_method(capsys):
+    words = ['estimate', 'bag', '--instrument', 'bench_rig', '--out', 'x']
+    ours = build_parser().parse_args(words).method
+    [theirs] = [one.default for one in estimator.PROGRAM.settings if one.name == 'method']
+    page = (Path(__file__).parents[2] / 'docs' / 'estimation.md').read_text()
+    assert f'`tendon estimate` takes `{ours}`' in page
+    assert f'The node takes `{theirs}`' in page
+    assert main(['estimate', '--help']) == 0
+    said = ' '.join(capsys.readouterr().out.split())
+    assert f'{ours} (default)' in said
+    assert f"{theirs} (the node's)" in said
+    assert all(name in said for name in METHODS)

@@ -286,6 +286,7 @@ def test_control_rate_forms(tmp_path):
         ('{rate: 500 Hz}', 2e-3, False),
         ('{period: 0.3 ms}', 3e-4, False),
         ('{rate: continuous}', 1e-3, True),
+        ('{rate: continuous, period: 0.5 ms}', 5e-4, True),  # of the set-points
     ]:
         one = load_instrument(write(tmp_path, GOOD + f'control: {text}\n'))
         assert (one.control_period, one.continuous_control) == (period, continuous)
