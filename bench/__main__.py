@@ -16,9 +16,9 @@ import platform
 from typing import Any
 
 from bench import accuracy, fixed, friction, others, scaling, speed
+from bench.figures import friction_figure
 from bench.yardstick import compiler_found
 from tendon_ros.model.engine import compiler_installed
-from tendon_ros.report.figures_bench import friction_figure
 
 OUT = Path('out/bench')
 

@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
+from bench.fixed_step import FixedStep
 from bench.rig import five_pulleys, press_and_swing
 from tendon_ros.base.errors import SimulationError
-from tendon_ros.model.fixed_step import FixedStep
 from tendon_ros.model.simulation import Simulation
 
 

@@ -12,6 +12,7 @@ use_one_thread()  # as all programs do; pytest runs a process on every core
 
 # these import numpy, which reads then how many threads it may use
 from tendon_ros.model.instrument import EffectUse  # noqa: E402
+from tendon_ros.model.instrument_file import load_instrument  # noqa: E402
 from tendon_ros.model.session import simulate  # noqa: E402
 from tendon_ros.model.trajectory_choice import chosen  # noqa: E402
 
@@ -46,6 +47,19 @@ def practice():
 def davinci_npz():
     """Return the file of the da Vinci grasper's runs; skip where it is absent."""
     return _shared('recordings/davinci_grasper/Tool_5_Maryland_L_3.npz')
+
+
+@pytest.fixture(scope='session')
+def curve_of(tmp_path_factory):
+    """Return a function that reads the file of a cable's curve as an instrument does."""
+
+    def read(path):
+        file = tmp_path_factory.mktemp('curves') / 'rig.yaml'
+        file.write_text(f'base: paper_rig\ncurves: {{{path.stem}: {{file: {path}}}}}\n')
+        [curve] = [c for c in load_instrument(file).curves if c.name == path.stem]
+        return curve
+
+    return read
 
 
 @pytest.fixture(scope='session')

@@ -37,16 +37,13 @@ def joint_layout(joints: list[str], fields: list[str]) -> Layout:
     return Layout(message, 'sensor_msgs/msg/JointState', numbers)
 
 
-def joint_states(
-    topic: str, channels: Mapping[tuple[str, str], Channel], epoch_ns: int
-) -> Iterator[Batch]:
+def joint_states(channels: Mapping[tuple[str, str], Channel], epoch_ns: int) -> Iterator[Batch]:
     """
     Yield the messages of a topic of JointStates, in batches of one layout.
 
     A message holds what was measured at its stamp. Joints with different fields at one stamp
     travel in separate messages, so that no field holds an invented number.
 
-    :param topic: relative topic.
     :param channels: by joint and field.
     :param epoch_ns: header stamp of time zero [ns].
     :return: batches, each in the order of its stamps.

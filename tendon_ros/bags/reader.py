@@ -102,14 +102,6 @@ def read_recording(
     )
 
 
-def _known(joints: JointNames, topic: str) -> Sequence[str] | None:
-    """Return the joints that the caller knows for a topic; motors are commanded as measured."""
-    group = JOINT_TOPICS[topic]
-    if group == 'setpoint' and group not in joints:
-        group = 'actuator'
-    return joints.get(group)
-
-
 def _epoch(metadata: Mapping[str, str], sinks: Iterable[_Sink]) -> int:
     """Return the stamp of time zero: what the writer noted, else the first stamp."""
     firsts = [first for sink in sinks if (first := sink.first_stamp()) is not None]

@@ -110,7 +110,7 @@ def _batches(recording: Recording) -> dict[str, list[Batch]]:
             fields = {field: channel for (_, field), channel in channels.items()}
             out[topic] = list(wrenches(topic, fields, epoch))
         else:
-            out[topic] = list(joint_states(topic, channels, epoch))
+            out[topic] = list(joint_states(channels, epoch))
         first = min((int(stamps[0]) for stamps, _ in out[topic] if stamps.size), default=0)
         if first < 0:
             raise RecordingError(

@@ -14,8 +14,8 @@ from pydantic import ValidationError
 
 from tendon_ros.base.errors import InstrumentError
 from tendon_ros.base.resources import installed, installed_names
-from tendon_ros.model.instrument import Curve, Instrument
-from tendon_ros.model.instrument_build import built, curve
+from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument_build import built
 from tendon_ros.model.instrument_schema import CurveSection, InstrumentSection, Section
 from tendon_ros.model.instrument_text import text_of
 from tendon_ros.model.yaml_text import mapping_of, read_mapping
@@ -50,21 +50,6 @@ def load_instrument(name_or_path: str | Path) -> Instrument:
     document = _with_base(path)
     document.setdefault('name', path.stem)
     return _built(path, document)
-
-
-def load_curve(path: Path) -> Curve:
-    """
-    Return the cable curve of a file.
-
-    :param path: the file.
-    :return: the curve, its name that of the file.
-    :raises InstrumentError: on anything wrong in the file.
-    """
-    section = _validated(path, CurveSection, read_mapping(path))
-    try:
-        return curve(path.stem, section)
-    except InstrumentError as error:
-        raise InstrumentError(f'{path}: {error}') from None
 
 
 def save_instrument(instrument: Instrument, path: Path) -> None:

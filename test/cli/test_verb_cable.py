@@ -5,7 +5,6 @@ import pytest
 from tendon_ros.base.resources import config_path
 from tendon_ros.cli.main import main
 from tendon_ros.model.cable import elongation_at, tension_at
-from tendon_ros.model.instrument_file import load_curve
 
 
 def test_installed_cable_is_what_the_command_gives(tmp_path, capsys):
@@ -15,12 +14,12 @@ def test_installed_cable_is_what_the_command_gives(tmp_path, capsys):
     assert '109 points, to 197.8 N at 2.16 mm' in capsys.readouterr().out
 
 
-def test_other_pretension_and_forces(tmp_path):
+def test_other_pretension_and_forces(tmp_path, curve_of):
     out = tmp_path / 'other.yaml'
     forces = '2 deg: 4.51 N, 4 deg: 12.25 N, 6 deg: 27.64 N'
     given = ['--pretension', '6 N', '--forces', forces, '--radius', '20 mm', '--arm', '40 mm']
     assert main(['cable', '--out', str(out), *given, '--loops', '2', '--up-to', '150 N']) == 0
-    curve = load_curve(out)
+    curve = curve_of(out)
     preload = elongation_at(curve, 6.0)
     delta = 0.02 * 0.10471975511965978 / 2
     net = tension_at(curve, preload + delta) - tension_at(curve, preload - delta)
@@ -28,11 +27,11 @@ def test_other_pretension_and_forces(tmp_path):
     assert curve.tension[-1] >= 150.0
 
 
-def test_tension_test(tmp_path):
+def test_tension_test(tmp_path, curve_of):
     table, out = tmp_path / 'test.csv', tmp_path / 'mine.yaml'
     table.write_text('elongation_mm,force_N\n0,0\n0.5,5\n1,20\n')
     assert main(['cable', '--table', str(table), '--out', str(out)]) == 0
-    curve = load_curve(out)
+    curve = curve_of(out)
     assert curve.elongation == (0.0, 5e-4, 1e-3)
     assert curve.tension == (0.0, 5.0, 20.0)
     assert 'test.csv' in out.read_text()

@@ -40,6 +40,12 @@ def reference():
 
 
 @pytest.fixture(scope='session')
+def FixedStep():
+    """Return the class of the check at a fixed step."""
+    return _module('fixed_step').FixedStep
+
+
+@pytest.fixture(scope='session')
 def press():
     """Return half a second in which the tip meets the wall, sticks, slides back and lets go."""
     t = 1e-3 * np.arange(500)

@@ -19,7 +19,6 @@ from tendon_ros.model.cable_identification import (
     tabulated,
 )
 from tendon_ros.model.instrument import Curve
-from tendon_ros.model.instrument_file import load_curve
 
 PAPER = BlockedTip(
     forces=tuple((math.radians(a), f) for a, f in ((1, 1.83), (5, 18.0), (7, 50.0))),
@@ -35,15 +34,15 @@ UNEVEN = Curve(
 
 
 @pytest.fixture(scope='module')
-def sava():
-    return load_curve(config_path('cables/sava_1027.yaml'))
+def sava(curve_of):
+    return curve_of(config_path('cables/sava_1027.yaml'))
 
 
 @pytest.fixture(scope='module', params=['sava_1027', 'bench', 'uneven'])
-def curve(request):
+def curve(request, curve_of):
     if request.param == 'uneven':
         return UNEVEN
-    return load_curve(config_path(f'cables/{request.param}.yaml'))
+    return curve_of(config_path(f'cables/{request.param}.yaml'))
 
 
 def test_close_to_the_cubic_through_the_points(curve):

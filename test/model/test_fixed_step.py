@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.errors import SimulationError
-from tendon_ros.model.fixed_step import FixedStep
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.simulation import Simulation
 
 
-def test_converges_to_the_default(bench_rig, press):
+def test_converges_to_the_default(FixedStep, bench_rig, press):
     rig = bench_rig.five_pulleys(wall='hunt_crossley')
     right = Simulation(rig, tolerance=1e-10).run(press[:170])
     assert right.contact_force.max() > 1.0
@@ -23,7 +22,7 @@ def test_converges_to_the_default(bench_rig, press):
     assert wrong[1] < 1e-5
 
 
-def test_has_order_four_where_nothing_sticks_or_touches(bench_rig, linear):
+def test_has_order_four_where_nothing_sticks_or_touches(FixedStep, bench_rig, linear):
     rig = linear(bench_rig.five_pulleys())
     effects = (EffectUse('gravity', 'pulley_3', {'torque': 0.5}),)
     rig = replace(rig, effects=effects)
@@ -37,24 +36,24 @@ def test_has_order_four_where_nothing_sticks_or_touches(bench_rig, linear):
 
 
 @pytest.mark.parametrize('step', [1e-3, 5e-4])
-def test_refuses_a_step_that_is_too_large(bench_rig, step):
+def test_refuses_a_step_that_is_too_large(FixedStep, bench_rig, step):
     with pytest.raises(SimulationError, match=r'too large .* the largest allowed is 0\.0001\d* s'):
         FixedStep(bench_rig.five_pulleys(), step)
 
 
-def test_refuses_a_step_that_does_not_divide_the_period(bench_rig):
+def test_refuses_a_step_that_does_not_divide_the_period(FixedStep, bench_rig):
     with pytest.raises(SimulationError, match=r'does not divide the control period of 0\.001 s'):
         FixedStep(bench_rig.five_pulleys(), 3e-4)
 
 
-def test_the_largest_step_is_that_of_the_oscillator(body):
+def test_the_largest_step_is_that_of_the_oscillator(FixedStep, body):
     # a lone inertia of 0.01 on 100 N m/rad swings with 100 rad/s: half a radian is 5 ms
     spring = EffectUse('joint_spring', 'pulley_body', {'stiffness': 100.0})
     one = FixedStep(body(effects=(spring,), control_period=1e-3), 1e-3)
     assert one.largest_step() == pytest.approx(0.5 / 100.0, rel=1e-4)
 
 
-def test_sticks_exactly(body):
+def test_sticks_exactly(FixedStep, body):
     uses = (
         EffectUse('coulomb_friction', 'pulley_body', {'torque': 0.2}),
         EffectUse('disturbance', 'pulley_body', {'torque': 0.5, 'start': 0.0, 'duration': 0.1}),
