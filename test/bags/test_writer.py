@@ -102,6 +102,16 @@ def test_a_bag_is_replaced_where_that_is_allowed(recording, tmp_path, out):
     assert read_recording(path).metadata['namespace'] == '/instrument'
 
 
+def test_a_bag_of_an_older_version_is_replaced(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'bag', storage='sqlite3')
+    metadata = path / 'metadata.yaml'
+    # they named their files from the folder above
+    metadata.write_text(metadata.read_text().replace('bag.db3', 'bag/bag.db3'))
+    (path / 'bag.db3-wal').touch()
+    write_recording(recording, path, overwrite=True)
+    assert {p.name for p in path.iterdir()} == {'metadata.yaml', 'bag.mcap'}
+
+
 @pytest.mark.parametrize(
     ('out', 'made', 'beside'),
     [
