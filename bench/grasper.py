@@ -27,7 +27,7 @@ from tendon_ros.base.resources import config_path
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
-from tendon_ros.estimate import build, estimate_recording
+from tendon_ros.estimate import build_observer, estimate_recording
 from tendon_ros.identify.segment import SETTLING
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
@@ -110,7 +110,7 @@ def estimated(
 
     The torque is compared as the load cell would read it, whose zero the instrument may know.
     """
-    observer = build(instrument, 'static_balance', channels=channels, wander=wander)
+    observer = build_observer(instrument, 'static_balance', channels=channels, wander=wander)
     out = estimate_recording(run, observer, rate=RATE)
     time = out['estimate/torque'].time
     late = time > run.start + SETTLING

@@ -21,7 +21,7 @@ import numpy as np
 
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.topics import place_of
-from tendon_ros.estimate import build, estimate_recording, Measurement
+from tendon_ros.estimate import build_observer, estimate_recording, Measurement
 from tendon_ros.estimate.offline import measurements
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -113,7 +113,7 @@ def main() -> None:
     instrument = load_instrument(args.instrument)
     channels = [c for c in args.channels.split(',') if c] or None
     recording = read_recording(args.bag)
-    observer = build(instrument, METHOD, channels=channels)
+    observer = build_observer(instrument, METHOD, channels=channels)
     said = list(measurements(recording, observer.needs, args.rate))
     batch = estimate_recording(recording, observer, rate=args.rate)
     [quantity] = {n for n in ('force', 'torque') if f'estimate/{n}' in batch}

@@ -14,7 +14,7 @@ use_one_thread()  # as all programs do; pytest runs a process on every core
 from tendon_ros.model.instrument import EffectUse  # noqa: E402
 from tendon_ros.model.instrument_file import load_instrument  # noqa: E402
 from tendon_ros.model.session import simulate  # noqa: E402
-from tendon_ros.model.trajectory_choice import chosen  # noqa: E402
+from tendon_ros.model.trajectory_choice import chosen_trajectory  # noqa: E402
 
 # machines are shared and noisy: no test passes or fails by the time it took
 settings.register_profile('untimed', deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -80,7 +80,7 @@ def measured_on():
         uses = tuple(EffectUse(*effect) for effect in effects)
         contacts = tuple(replace(c, enabled=touching) for c in instrument.contacts)
         rig = replace(instrument, effects=(*instrument.effects, *uses), contacts=contacts)
-        motion = chosen(trajectory, rig.motor_names, dict(settings))
+        motion = chosen_trajectory(trajectory, rig.motor_names, dict(settings))
         run = simulate(rig, motion, rate=rate, seed=seed)
         kept = {s.channel for s in rig.sensors}
         kept |= {f'setpoint/pulley_{driven}/position' for driven in rig.driven}

@@ -96,7 +96,7 @@ def _live(folder: Path) -> LiveRig:
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import shown
     from tendon_ros.cli.rig_session import record_rig
-    from tendon_ros.estimate import build, estimate_recording
+    from tendon_ros.estimate import build_observer, estimate_recording
     from tendon_ros.estimate.score import scored
     from tendon_ros.model.instrument_file import load_instrument
     from tendon_ros.report.demo_page import LiveRig
@@ -106,7 +106,7 @@ def _live(folder: Path) -> LiveRig:
     recording = read_recording(bag)
     with shown('analysing') as progress:
         instrument = load_instrument(INSTRUMENT)
-        observer = build(instrument, METHOD)
+        observer = build_observer(instrument, METHOD)
         again = estimate_recording(recording, observer, progress)['estimate/force']
     score = scored(recording, instrument)
     if score is None:
@@ -125,7 +125,7 @@ def _real(path: Path) -> RealTool:
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.base.resources import config_path
     from tendon_ros.cli.progress import shown
-    from tendon_ros.estimate import build, estimate_recording
+    from tendon_ros.estimate import build_observer, estimate_recording
     from tendon_ros.estimate.score import Score, scored
     from tendon_ros.model.instrument_file import load_instrument
     from tendon_ros.report.demo_page import RealTool
@@ -137,7 +137,7 @@ def _real(path: Path) -> RealTool:
     looked_at = None
     with shown('estimating') as progress:
         for n, recording in enumerate(import_runs(path, mapping)):
-            observer = build(grasper, 'static_balance', channels=TOOL_CHANNELS)
+            observer = build_observer(grasper, 'static_balance', channels=TOOL_CHANNELS)
             estimated = estimate_recording(recording, observer, rate=TOOL_RATE)
             score = scored(estimated, grasper)
             if score is None:

@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.bags.writer import write_recording
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import shown
-    from tendon_ros.estimate import build, estimate_recording
+    from tendon_ros.estimate import build_observer, estimate_recording
     from tendon_ros.estimate.score import scored
     from tendon_ros.model.instrument_file import load_instrument
 
@@ -81,12 +81,12 @@ def run(args: argparse.Namespace) -> None:
     instrument = load_instrument(args.instrument)
     channels = [c.strip() for c in args.channels.split(',')] if args.channels else None
     chosen = {'channels': channels, 'wander': args.wander}
-    build(instrument, args.method, **chosen)  # a mistake is told before any bag is read
+    build_observer(instrument, args.method, **chosen)  # a mistake is told before any bag is read
     squares, samples, unit = 0.0, 0, ''
     for bag, out in _places(args):
         recording = read_recording(bag, args.namespace)
         with shown(f'estimating {recording.name}') as progress:
-            observer = build(instrument, args.method, **chosen)
+            observer = build_observer(instrument, args.method, **chosen)
             estimated = estimate_recording(recording, observer, progress, args.rate)
         if out.suffix == '.csv':
             export_csv(estimated, out, overwrite=args.overwrite)

@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.cli.progress import shown
     from tendon_ros.model.instrument_file import load_instrument
     from tendon_ros.model.session import simulate
-    from tendon_ros.model.trajectory_choice import chosen, profiles, settings
+    from tendon_ros.model.trajectory_choice import chosen_trajectory, profiles, settings
 
     if args.trajectory == 'list':
         for name in profiles():
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> None:
             raise TrajectoryError(f'--set {text}: write KEY=VALUE')
         given[key.strip()] = value.strip()
     instrument = load_instrument(args.instrument)
-    trajectory = chosen(args.trajectory, instrument.motor_names, given)
+    trajectory = chosen_trajectory(args.trajectory, instrument.motor_names, given)
     began = time.perf_counter()
     with shown('simulating') as progress:
         recording = simulate(

@@ -1,6 +1,6 @@
 """Estimate the operating force and the inner pulleys from motor-side signals."""
 
-from tendon_ros.estimate.methods import build, METHODS
+from tendon_ros.estimate.methods import build_observer, METHODS
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.offline import estimate_recording
 from tendon_ros.estimate.synchronise import Synchroniser
@@ -11,6 +11,6 @@ __all__ = [
     'Measurement',
     'Observer',
     'Synchroniser',
-    'build',
+    'build_observer',
     'estimate_recording',
 ]

@@ -32,7 +32,7 @@ METHODS: Mapping[str, str] = MappingProxyType(
 )
 
 
-def build(
+def build_observer(
     instrument: Instrument,
     method: str,
     *,

@@ -50,7 +50,7 @@ def settings(name: str) -> Mapping[str, tuple[Value, Setting]]:
     }
 
 
-def chosen(
+def chosen_trajectory(
     name_or_path: str, motors: Sequence[str], given: Mapping[str, str | Value] | None = None
 ) -> Trajectory:
     """

@@ -12,7 +12,7 @@ from std_srvs.srv import Trigger
 
 from tendon_ros.bags.topics import JOINT_TOPICS, place_of
 from tendon_ros.base.errors import TendonError
-from tendon_ros.estimate import build, Estimate, Measurement, Observer, Synchroniser
+from tendon_ros.estimate import build_observer, Estimate, Measurement, Observer, Synchroniser
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.nodes.broadcast import Broadcast
@@ -53,7 +53,7 @@ class EstimatorNode(TendonNode):
         )
         start = time.monotonic()
         channels = [name for name in str(values['channels']).split(',') if name]
-        self._observer: Observer = build(
+        self._observer: Observer = build_observer(
             instrument,
             self._method,
             channels=channels or None,

@@ -15,7 +15,7 @@ from tendon_ros.base.errors import listed, TendonError, TrajectoryError
 from tendon_ros.base.recording import FloatArray
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.trajectory import check_limits
-from tendon_ros.model.trajectory_choice import chosen, profiles
+from tendon_ros.model.trajectory_choice import chosen_trajectory, profiles
 from tendon_ros.nodes.conversions import joint_values
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.motion import plan
@@ -47,7 +47,9 @@ class TrajectoryNode(TendonNode):
         self.refuse_unknown_parameters()
         instrument = load_instrument(str(values['instrument']))
         name = str(values['trajectory'])
-        self._trajectory = chosen(name, instrument.motor_names, _settings_of(name, values))
+        self._trajectory = chosen_trajectory(
+            name, instrument.motor_names, _settings_of(name, values)
+        )
         check_limits(self._trajectory, instrument)
         self._speeds = {f'pulley_{m.pulley}': m.speed_limit for m in instrument.motors}
         self._joints = list(self._speeds)

@@ -11,7 +11,7 @@ from tendon_ros.cli.main import build_parser, main
 from tendon_ros.estimate import METHODS
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 from tendon_ros.nodes import estimator
 
 
@@ -20,7 +20,7 @@ def recorded():
     """Return a tenth of a second of a rig."""
     rig = load_instrument('bench_rig')
     settings = {'amplitude': '2 deg', 'duration': '0.1 s'}
-    return simulate(rig, chosen('step', rig.motor_names, settings), engine='plain')
+    return simulate(rig, chosen_trajectory('step', rig.motor_names, settings), engine='plain')
 
 
 @pytest.fixture

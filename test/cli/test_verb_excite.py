@@ -16,7 +16,7 @@ from tendon_ros.diagnose.result import (
 )  # fmt: skip
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 
 def run(*words):
@@ -45,7 +45,7 @@ def test_writes_what_simulate_takes(tmp_path, capsys):
     assert 'pulley/pulley_1/position' in text
     assert 'never' in text
     rig = load_instrument('bench_rig')
-    trajectory = chosen(str(out), rig.motor_names)
+    trajectory = chosen_trajectory(str(out), rig.motor_names)
     assert trajectory.duration == 12.0
     recording = simulate(rig, trajectory)
     assert recording.end - recording.start == pytest.approx(12.0, abs=0.01)

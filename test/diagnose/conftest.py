@@ -9,7 +9,7 @@ from tendon_ros.diagnose import session
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 
 @pytest.fixture(scope='session')
@@ -35,7 +35,9 @@ def recorded():
         measured |= {f'setpoint/pulley_{name}/position' for name in rig.driven}
         runs = []
         for name, one, trajectory, settings in plans:
-            run = simulate(one, chosen(trajectory, rig.motor_names, settings), rate=500.0, seed=1)
+            run = simulate(
+                one, chosen_trajectory(trajectory, rig.motor_names, settings), rate=500.0, seed=1
+            )
             kept = {n: c for n, c in run.channels.items() if n in measured}
             runs.append(replace(run, name=name, channels=kept))
         return tuple(runs)

@@ -10,7 +10,7 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 
 def test_contacts_are_found_for_each_recording(bench, pressed, free):
@@ -101,7 +101,9 @@ def test_a_measured_load_pushes_where_no_wall_fits(bench, measured_on):
 def test_a_known_bias_of_the_cell_is_no_reason_against_a_load(bias):
     grasper = load_instrument('davinci_grasper')
     held = EffectUse('joint_spring', 'pulley_jaw', {'stiffness': 0.04, 'rest': -1.0})
-    motion = chosen('multisine', grasper.motor_names, {'amplitude': '20 deg', 'duration': '4 s'})
+    motion = chosen_trajectory(
+        'multisine', grasper.motor_names, {'amplitude': '20 deg', 'duration': '4 s'}
+    )
     run = simulate(replace(grasper, effects=(held,)), motion, rate=200.0)
     jaw = run['pulley/pulley_jaw/position']
     load = Channel('load_cell/torque', jaw.time, 0.04 * (jaw.value + 1.0) + bias)

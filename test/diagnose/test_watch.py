@@ -17,7 +17,7 @@ from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.recorded import channel_values
 from tendon_ros.model.simulation import Simulation
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 EPOCH = 1_700_000_000 * 10**9
 FRICTION = EffectUse('tension_friction', 'pulley_3', {'coefficient': 0.12})
@@ -49,7 +49,7 @@ def simulated(rig, seconds, changes=(), motion=None, seed=1):
     period = rig.control_period
     if motion is None:
         settings = {'duration': f'{seconds} s', 'amplitude': '5 deg'}
-        motion = chosen('multisine', rig.motor_names, settings).sample(period)
+        motion = chosen_trajectory('multisine', rig.motor_names, settings).sample(period)
     every = round(0.005 / period)
     changes = dict(changes)
     stamps, columns = [], {}
@@ -208,7 +208,7 @@ def test_a_bag_played_back_gives_the_same(rig, changing, tmp_path):
 
 def test_motors_at_rest_are_not_judged(rig, real):
     period = rig.control_period
-    motion = chosen(
+    motion = chosen_trajectory(
         'multisine', rig.motor_names, {'duration': '12 s', 'amplitude': '5 deg'}
     ).sample(period)
     still = np.repeat(motion[-1:], round(11.0 / period), axis=0)

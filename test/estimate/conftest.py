@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 
 @pytest.fixture(scope='session')
@@ -19,20 +19,22 @@ def bench():
 @pytest.fixture(scope='session')
 def pressing(bench):
     """Return a simulated recording without noise: the tip presses, then lets go."""
-    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=100.0)
+    return simulate(bench, chosen_trajectory('paper_fig12', bench.motor_names), rate=100.0)
 
 
 @pytest.fixture(scope='session')
 def noisy(bench):
     """Return the same with the noise of the sensors."""
-    return simulate(bench, chosen('paper_fig12', bench.motor_names), rate=100.0, seed=7)
+    return simulate(bench, chosen_trajectory('paper_fig12', bench.motor_names), rate=100.0, seed=7)
 
 
 @pytest.fixture(scope='session')
 def free_recording(bench):
     """Return a simulated recording in which the tip touches nothing."""
     away = replace(bench, contacts=tuple(replace(c, enabled=False) for c in bench.contacts))
-    return simulate(away, chosen('multisine', bench.motor_names, {'duration': '6 s'}), rate=125.0)
+    return simulate(
+        away, chosen_trajectory('multisine', bench.motor_names, {'duration': '6 s'}), rate=125.0
+    )
 
 
 @pytest.fixture

@@ -8,13 +8,13 @@ import pytest
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.base.errors import InstrumentError, RecordingError
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.estimate import build, estimate_recording, Measurement, METHODS
+from tendon_ros.estimate import build_observer, estimate_recording, Measurement, METHODS
 from tendon_ros.estimate.offline import measurements
 from tendon_ros.estimate.score import scored
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 #: largest error of the force [N], and of an inner angle [rad], without noise: what is left is the
 #: rounding of the encoders, and inertia where a method leaves it out
@@ -32,7 +32,7 @@ def taut():
 @pytest.mark.parametrize('method', METHODS)
 def test_force_and_inner_angles_of_a_simulated_press(method, bench, pressing, rms):
     """On the model's own data every method meets the truth within the encoders' rounding."""
-    estimated = estimate_recording(pressing, build(bench, method))
+    estimated = estimate_recording(pressing, build_observer(bench, method))
     force, angle = LIMITS[method]
     estimate = estimated['estimate/force']
     assert pressing['load_cell/force'].value.max() > 40.0
@@ -47,7 +47,9 @@ def test_no_force_is_found_where_nothing_is_touched(bench, free_recording, rms):
     """A free motion is not taken for a force; the static method owes what inertia does."""
     found = {
         method: rms(
-            estimate_recording(free_recording, build(bench, method))['estimate/force'].value
+            estimate_recording(free_recording, build_observer(bench, method))[
+                'estimate/force'
+            ].value
         )
         for method in ('static_balance', 'dynamic')
     }
@@ -58,7 +60,7 @@ def test_no_force_is_found_where_nothing_is_touched(bench, free_recording, rms):
 @pytest.mark.parametrize('method', ['static_balance', 'dynamic'])
 def test_stated_uncertainty_covers_the_error(method, bench, noisy):
     """With noise, two standard deviations hold at least 90 % of the samples, and are no excuse."""
-    recording = estimate_recording(noisy, build(bench, method))
+    recording = estimate_recording(noisy, build_observer(bench, method))
     score = scored(recording, bench)
     assert score is not None
     assert score.coverage > 0.9
@@ -68,18 +70,18 @@ def test_stated_uncertainty_covers_the_error(method, bench, noisy):
 @pytest.mark.parametrize('method', METHODS)
 def test_one_at_a_time_is_the_same_as_a_recording(method, bench, pressing):
     """Live and offline are one path: bit for bit."""
-    observer = build(bench, method)
+    observer = build_observer(bench, method)
     some = list(measurements(pressing, observer.needs))[:300]
     live = [observer.update(m).values['estimate/force'] for m in some]
     channels = (pressing[name] for name in observer.needs)
     begin = [Channel(c.name, c.time[:300], c.value[:300]) for c in channels]
-    offline = estimate_recording(pressing.with_channels(begin), build(bench, method))
+    offline = estimate_recording(pressing.with_channels(begin), build_observer(bench, method))
     assert np.array_equal(live, offline['estimate/force'].value)
 
 
 def test_reset_forgets(bench, pressing):
     """After a reset the same measurements give the same estimates."""
-    observer = build(bench, 'dynamic')
+    observer = build_observer(bench, 'dynamic')
     some = list(measurements(pressing, observer.needs))[:50]
     first = [observer.update(m).values for m in some]
     observer.reset()
@@ -89,7 +91,7 @@ def test_reset_forgets(bench, pressing):
 @pytest.mark.parametrize('method', METHODS)
 def test_bad_measurements_are_refused_and_do_no_harm(method, bench, pressing):
     """NaN, a missing channel and a stamp that steps back raise; the next good one goes on."""
-    observer, untouched = build(bench, method), build(bench, method)
+    observer, untouched = build_observer(bench, method), build_observer(bench, method)
     some = list(measurements(pressing, observer.needs))[:4]
     for m in some[:3]:
         observer.update(m)
@@ -109,13 +111,13 @@ def test_bad_measurements_are_refused_and_do_no_harm(method, bench, pressing):
 def test_channels_that_cannot_tell_the_force_are_refused(bench):
     """Too few torques, unknown channels and unknown methods name the mend."""
     with pytest.raises(InstrumentError, match='at least one angle and one torque'):
-        build(bench, 'static_balance', channels=['actuator/pulley_M/position'])
+        build_observer(bench, 'static_balance', channels=['actuator/pulley_M/position'])
     with pytest.raises(InstrumentError, match="no sensor gives 'actuator/pulley_M/speed'"):
-        build(bench, 'static_balance', channels=['actuator/pulley_M/speed'])
+        build_observer(bench, 'static_balance', channels=['actuator/pulley_M/speed'])
     with pytest.raises(InstrumentError, match='contact_angle'):
-        build(bench, 'kalman')
+        build_observer(bench, 'kalman')
     with pytest.raises(InstrumentError, match='no operating force'):
-        build(load_instrument('single_body'), 'static_balance')
+        build_observer(load_instrument('single_body'), 'static_balance')
 
 
 def test_what_is_known_of_a_force_makes_it_known_better(rms):
@@ -128,13 +130,13 @@ def test_what_is_known_of_a_force_makes_it_known_better(rms):
         ),
     )
     motion = {'amplitude': '70 deg', 'duration': '6 s', 'frequency': '0.17 Hz'}
-    profile = chosen('sine', loud.motor_names, motion)
+    profile = chosen_trajectory('sine', loud.motor_names, motion)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
     off = {}
     for rate in (50.0, 250.0):
         recording = simulate(loud, profile, rate=rate, seed=4)
         for wander in (None, 0.03):
-            observer = build(loud, 'static_balance', channels=channels, wander=wander)
+            observer = build_observer(loud, 'static_balance', channels=channels, wander=wander)
             estimated = estimate_recording(recording, observer)
             estimate = estimated['estimate/torque']
             error = estimate.value - recording['load_cell/torque'].at(estimate.time)
@@ -146,17 +148,17 @@ def test_what_is_known_of_a_force_makes_it_known_better(rms):
 def test_how_far_a_force_wanders_is_checked(bench):
     """What it says nothing to, and what it cannot be."""
     with pytest.raises(InstrumentError, match='static_balance or dynamic'):
-        build(bench, 'contact_angle', wander=1.0)
+        build_observer(bench, 'contact_angle', wander=1.0)
     for wander in (0.0, -1.0, float('nan')):
         with pytest.raises(InstrumentError, match='must be positive'):
-            build(bench, 'dynamic', wander=wander)
+            build_observer(bench, 'dynamic', wander=wander)
 
 
 def test_a_missing_channel_of_a_recording_is_named(bench, pressing):
     """The error lists what the recording has."""
     kept = {k: c for k, c in pressing.channels.items() if k != 'actuator/pulley_L/effort'}
     with pytest.raises(RecordingError, match='actuator/pulley_L/effort'):
-        estimate_recording(Recording('cut', kept), build(bench, 'static_balance'))
+        estimate_recording(Recording('cut', kept), build_observer(bench, 'static_balance'))
 
 
 @pytest.mark.parametrize('bias', [0.0, 0.03])
@@ -164,12 +166,14 @@ def test_shaft_torque_gives_the_jaw_torque(rms, bias):
     """Spindle torque and angle alone give the torque at the jaw, whatever their sensor's zero."""
     zero = EffectUse('load_cell_bias', 'shaft_spindle', {'force': bias})
     grasper = replace(taut(), effects=(zero,))
-    profile = chosen('ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'})
+    profile = chosen_trajectory(
+        'ramp', grasper.motor_names, {'amplitude': '45 deg', 'duration': '4 s'}
+    )
     recording = simulate(grasper, profile, rate=100.0)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
-    estimated = estimate_recording(recording, build(grasper, 'static_balance', channels=channels))[
-        'estimate/torque'
-    ]
+    estimated = estimate_recording(
+        recording, build_observer(grasper, 'static_balance', channels=channels)
+    )['estimate/torque']
     truth = recording['load_cell/torque']
     assert truth.value.max() > 0.02
     assert rms(estimated.value - truth.at(estimated.time)) < 0.05 * truth.value.max()
@@ -189,7 +193,7 @@ def test_a_bench_of_another_make(bench, practice, rms):
     measured = recording['load_cell/force']
     assert measured.value.max() > 40.0
     for method in METHODS:
-        estimated = estimate_recording(recording, build(bench, method), rate=100.0)
+        estimated = estimate_recording(recording, build_observer(bench, method), rate=100.0)
         estimate = estimated['estimate/force']
         assert rms(estimate.value - measured.at(estimate.time)) < 0.3, method
 
@@ -207,7 +211,9 @@ def test_a_reversal_is_not_taken_for_force(rms):
         )
         for coefficient in (0.2, 0.18)
     )
-    profile = chosen('multisine', grasper.motor_names, {'amplitude': '50 deg', 'duration': '8 s'})
+    profile = chosen_trajectory(
+        'multisine', grasper.motor_names, {'amplitude': '50 deg', 'duration': '8 s'}
+    )
     recording = simulate(rubbing, profile, rate=100.0, seed=3)
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
     misfits = dict(zip(channels, (2e-3, 8e-3), strict=True))  # as a diagnosis would leave them
@@ -215,7 +221,9 @@ def test_a_reversal_is_not_taken_for_force(rms):
         known,
         sensors=tuple(replace(s, misfit=misfits.get(s.channel, 0.0)) for s in known.sensors),
     )
-    estimated = estimate_recording(recording, build(doubting, 'static_balance', channels=channels))
+    estimated = estimate_recording(
+        recording, build_observer(doubting, 'static_balance', channels=channels)
+    )
     estimate = estimated['estimate/torque']
     truth = recording['load_cell/torque'].at(estimate.time)
     off = np.abs(estimate.value - truth)
@@ -238,7 +246,7 @@ def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
 
     motion = {'amplitude': '55 deg', 'duration': '10 s', 'frequency': '0.3 Hz'}
     recording = simulate(
-        rubbing(true), chosen('sine', grasper.motor_names, motion), rate=100.0, seed=3
+        rubbing(true), chosen_trajectory('sine', grasper.motor_names, motion), rate=100.0, seed=3
     )
     channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
     doubting = replace(
@@ -247,7 +255,9 @@ def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
             replace(s, misfit=3e-3) if s.channel in channels else s for s in grasper.sensors
         ),
     )
-    estimated = estimate_recording(recording, build(doubting, 'static_balance', channels=channels))
+    estimated = estimate_recording(
+        recording, build_observer(doubting, 'static_balance', channels=channels)
+    )
     estimate = estimated['estimate/torque']
     truth = recording['load_cell/torque'].at(estimate.time)
     off = np.abs(estimate.value - truth)
@@ -265,10 +275,10 @@ def test_a_small_torque_is_met_at_the_edge_of_a_play():
         sensors=tuple(replace(s, misfit=8e-3 * (s.kind == 'loop_torque')) for s in tool.sensors),
     )
     motion = {'duration': '6 s', 'amplitude': '40 deg'}
-    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=100.0)
+    run = simulate(rig, chosen_trajectory('sine', rig.motor_names, motion), rate=100.0)
     channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
     assert 0.01 < run['load_cell/torque'].value.max() < 0.02
-    found = estimate_recording(run, build(rig, 'static_balance', channels=channels))
+    found = estimate_recording(run, build_observer(rig, 'static_balance', channels=channels))
     estimate = found['estimate/torque']
     off = estimate.value - run['load_cell/torque'].at(estimate.time)
     assert np.abs(off).mean() < 0.001
@@ -281,12 +291,12 @@ def test_play_of_a_coupling_is_crossed(rms, monkeypatch):
         tool, effects=(EffectUse('backlash', 'coupling_coupling', {'angle': 0.02, 'held': 0.0}),)
     )
     motion = {'duration': '6 s', 'amplitude': '70 deg'}
-    run = simulate(rig, chosen('sine', rig.motor_names, motion), rate=100.0)
+    run = simulate(rig, chosen_trajectory('sine', rig.motor_names, motion), rate=100.0)
     channels = ('pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort')
     assert run['load_cell/torque'].value.max() > 0.05
 
     def off():
-        found = estimate_recording(run, build(rig, 'static_balance', channels=channels))
+        found = estimate_recording(run, build_observer(rig, 'static_balance', channels=channels))
         estimate = found['estimate/torque']
         return rms(estimate.value - run['load_cell/torque'].at(estimate.time))
 
@@ -305,7 +315,7 @@ def test_a_force_that_changes_sides_is_followed_through_slack():
     angle = 0.3 * np.abs(np.sin(3.0 * time)) - 0.5
     values = zip(channels, (angle, torque), strict=True)
     run = Recording('swinging', {name: Channel(name, time, value) for name, value in values})
-    found = estimate_recording(run, build(tool, 'static_balance', channels=channels))
+    found = estimate_recording(run, build_observer(tool, 'static_balance', channels=channels))
     # only the jaw's damping keeps it back for a moment
     off = found['estimate/torque'].value - torque / 0.9
     assert np.abs(off).max() < 0.6 * (high - low)
@@ -330,7 +340,7 @@ def test_a_torque_that_reverses_crosses_several_plays_at_once(monkeypatch):
     run = Recording('swinging', {name: Channel(name, time, value) for name, value in values})
 
     def astray():
-        found = estimate_recording(run, build(tool, 'static_balance', channels=channels))
+        found = estimate_recording(run, build_observer(tool, 'static_balance', channels=channels))
         return np.mean(np.abs(found['estimate/torque'].value - torque / 0.9) > 5e-3)
 
     assert astray() < 0.1

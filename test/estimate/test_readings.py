@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from tendon_ros.estimate.methods import build, METHODS
+from tendon_ros.estimate.methods import build_observer, METHODS
 from tendon_ros.estimate.offline import estimate_recording
 from tendon_ros.estimate.readings import Readings
 from tendon_ros.estimate.rubbing import readable
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 WRONG = (
     EffectUse('torque_gain', 'motor_L', {'gain': 1.3}),
@@ -46,11 +46,11 @@ def test_readings_become_what_was_there(bench):
 def test_a_force_is_found_whatever_its_sensors_make_of_it(method, bench, rms):
     """What a diagnosis found of sensors and motors is in the file, and the estimate is right."""
     spoilt = replace(bench, effects=WRONG)
-    run = simulate(spoilt, chosen('paper_fig12', bench.motor_names), rate=100.0)
+    run = simulate(spoilt, chosen_trajectory('paper_fig12', bench.motor_names), rate=100.0)
     truth = run['load_cell/force']
     off = {}
     for name, file in (('known', spoilt), ('unknown', bench)):
-        found = estimate_recording(run, build(file, method))['estimate/force']
+        found = estimate_recording(run, build_observer(file, method))['estimate/force']
         late = found.time > 4.0
         off[name] = rms((found.value - truth.at(found.time))[late])
     assert off['known'] < 0.03 * truth.value.max()

@@ -16,7 +16,7 @@ from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 TIGHT = (Candidate('pretension', 'cable_m1'), {'scale': 0.8})
 LOOSE = (Candidate('pretension', 'cable_12'), {'scale': 0.8})
@@ -74,7 +74,7 @@ def test_the_proposal_separates_where_the_usual_run_does_not(rig, found):
         contacts=tuple(replace(c, enabled=c.name == best.motion.against) for c in rig.contacts),
     )
     proposed = best.motion.trajectory(rig.motor_names)
-    usual = chosen('multisine', rig.motor_names, {'duration': 6.0})
+    usual = chosen_trajectory('multisine', rig.motor_names, {'duration': 6.0})
     names = [*MOTORS, best.add_channel]
     gain = {
         'usual': cost(rig, usual, MOTORS, LOOSE[0]) - cost(rig, usual, MOTORS, TIGHT[0]),

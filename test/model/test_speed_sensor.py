@@ -7,7 +7,7 @@ from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 SENSORS = 'speed_sensors: {M: {}, 3: {resolution: 0.01 rad/s}, 1: {noise: 0.1 rad/s}}\n'
 
@@ -22,7 +22,7 @@ def run(tmp_path_factory):
     )
     rig = load_instrument(folder / 'rig.yaml')
     given = {'duration': '1 s', 'fade': '0.1 s', 'frequency': '2 Hz'}
-    recording = simulate(rig, chosen('sine', rig.motor_names, given), seed=1)
+    recording = simulate(rig, chosen_trajectory('sine', rig.motor_names, given), seed=1)
     return recording, read_recording(write_recording(recording, folder / 'bag'))
 
 

@@ -10,7 +10,7 @@ from tendon_ros.base.errors import TrajectoryError
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory import check_limits, load_trajectory, Trajectory
-from tendon_ros.model.trajectory_choice import chosen, profiles, settings
+from tendon_ros.model.trajectory_choice import chosen_trajectory, profiles, settings
 
 MOTORS = ('M', 'L')
 DEGREE = math.pi / 180
@@ -23,7 +23,7 @@ def rig():
 
 @pytest.mark.parametrize('name', profiles())
 def test_every_profile_is_sound_and_described(name, rig):
-    one = chosen(name, MOTORS)
+    one = chosen_trajectory(name, MOTORS)
     assert one.name == name
     assert one.motors == MOTORS
     np.testing.assert_allclose(one.at(0.0), 0.0, atol=1e-12)
@@ -39,23 +39,25 @@ def test_every_profile_is_sound_and_described(name, rig):
 
 @pytest.mark.parametrize('name', [n for n in profiles() if 'driven' in settings(n)])
 def test_driven_says_who_moves(name):
-    one = chosen(name, MOTORS, {'driven': 'L'})
+    one = chosen_trajectory(name, MOTORS, {'driven': 'L'})
     assert np.ptp(one.position['M']) == 0.0
     assert np.ptp(one.position['L']) > 0.0
 
 
 @pytest.mark.parametrize('name', [n for n in profiles() if 'amplitude' in settings(n)])
 def test_amplitude_is_the_largest_angle(name):
-    one = chosen(name, MOTORS, {'amplitude': '3 deg'})
+    one = chosen_trajectory(name, MOTORS, {'amplitude': '3 deg'})
     assert np.abs(one.position['M']).max() == pytest.approx(3 * DEGREE, rel=1e-2)
 
 
 def test_paper_profile_holds_its_angles():
-    one = chosen('paper_fig12', MOTORS)
+    one = chosen_trajectory('paper_fig12', MOTORS)
     held = one.at(np.array([0.5, 3.5, 7.5, 11.5, 16.0])) / DEGREE
     np.testing.assert_allclose(held[:, 0], [0, 5, 7, 5, 4], atol=1e-6)
     np.testing.assert_array_equal(held[:, 1], 0.0)
-    sharp = chosen('paper_fig12', MOTORS, {'rounding': 0.0}).at(np.array([1.5, 5.5, 13.5]))
+    sharp = chosen_trajectory('paper_fig12', MOTORS, {'rounding': 0.0}).at(
+        np.array([1.5, 5.5, 13.5])
+    )
     np.testing.assert_allclose(sharp[:, 0] / DEGREE, [2.5, 6.0, 4.5])
 
 
@@ -64,23 +66,25 @@ def test_paper_profile_is_that_of_the_practice_bench(practice):
 
     bag = read_recording(practice / 'case_00' / 'contact')
     setpoint = bag['setpoint/pulley_M/position']
-    ours = chosen('paper_fig12', MOTORS).at(setpoint.time)[:, 0]
+    ours = chosen_trajectory('paper_fig12', MOTORS).at(setpoint.time)[:, 0]
     np.testing.assert_allclose(ours, setpoint.value, atol=0.01 * DEGREE)
 
 
 def test_step_is_done_within_a_millisecond():
-    one = chosen('step', MOTORS, {'start': '0.2 s', 'amplitude': '6 deg'})
+    one = chosen_trajectory('step', MOTORS, {'start': '0.2 s', 'amplitude': '6 deg'})
     ticks = one.sample(1e-3)[:, 0] / DEGREE
     np.testing.assert_allclose(ticks[[0, 200, 201, 3000]], [0, 0, 6, 6])
 
 
 def test_ramp_goes_at_its_speed():
-    one = chosen('ramp', MOTORS, {'speed': '2 deg/s', 'amplitude': '-4 deg'})
+    one = chosen_trajectory('ramp', MOTORS, {'speed': '2 deg/s', 'amplitude': '-4 deg'})
     np.testing.assert_allclose(one.at(np.array([0.5, 1.5, 2.5]))[:, 0] / DEGREE, [0, -2, -4])
 
 
 def test_minimum_jerk_starts_and_ends_at_rest():
-    one = chosen('minimum_jerk', MOTORS, {'move': '2 s', 'start': '0.5 s', 'duration': '4 s'})
+    one = chosen_trajectory(
+        'minimum_jerk', MOTORS, {'move': '2 s', 'start': '0.5 s', 'duration': '4 s'}
+    )
     q = one.sample(1e-3)[:, 0]
     speed = np.diff(q) / 1e-3
     assert np.abs(speed[[499, 500, 2499, 2500]]).max() < 1e-4 * np.abs(speed).max()
@@ -88,24 +92,26 @@ def test_minimum_jerk_starts_and_ends_at_rest():
 
 
 def test_chirp_goes_from_first_to_last():
-    one = chosen('chirp', MOTORS, {'first': '1 Hz', 'last': '4 Hz', 'duration': '20 s'})
+    one = chosen_trajectory('chirp', MOTORS, {'first': '1 Hz', 'last': '4 Hz', 'duration': '20 s'})
     crossings = one.time[1:][np.diff(np.sign(one.position['M'])) != 0]
     half = np.diff(crossings)
     assert 0.5 / half[2] == pytest.approx(1.0, rel=0.15)
     assert 0.5 / half[-3] == pytest.approx(4.0, rel=0.1)
-    same = chosen('chirp', MOTORS, {'first': '2 Hz', 'last': '2 Hz'})
-    sine = chosen('sine', MOTORS, {'frequency': '2 Hz', 'amplitude': '2 deg', 'duration': '20 s'})
+    same = chosen_trajectory('chirp', MOTORS, {'first': '2 Hz', 'last': '2 Hz'})
+    sine = chosen_trajectory(
+        'sine', MOTORS, {'frequency': '2 Hz', 'amplitude': '2 deg', 'duration': '20 s'}
+    )
     np.testing.assert_allclose(same.position['M'], sine.position['M'], atol=1e-9)
 
 
 def test_multisine_has_its_frequencies_and_its_seed():
     given = {'frequencies': '0.5 Hz, 2 Hz', 'duration': '40 s', 'fade': '0 s'}
-    one = chosen('multisine', MOTORS, given)
+    one = chosen_trajectory('multisine', MOTORS, given)
     power = np.abs(np.fft.rfft(one.position['M'][:-1]))
     frequency = np.fft.rfftfreq(one.time.size - 1, 1e-3)
     assert set(frequency[np.argsort(power)[-2:]]) == {0.5, 2.0}
-    again = chosen('multisine', MOTORS, given)
-    other = chosen('multisine', MOTORS, {**given, 'seed': 1})
+    again = chosen_trajectory('multisine', MOTORS, given)
+    other = chosen_trajectory('multisine', MOTORS, {**given, 'seed': 1})
     np.testing.assert_array_equal(one.position['L'], again.position['L'])
     assert np.abs(one.position['L'] - other.position['L']).max() > DEGREE
     assert np.abs(one.position['L'] - one.position['M']).max() > DEGREE
@@ -129,7 +135,7 @@ def test_multisine_has_its_frequencies_and_its_seed():
 )
 def test_wrong_settings_are_named(name, given, said):
     with pytest.raises(TrajectoryError) as error:
-        chosen(name, MOTORS, given)
+        chosen_trajectory(name, MOTORS, given)
     assert said in str(error.value)
 
 
@@ -166,13 +172,15 @@ def test_no_motors_at_all():
 
 def test_limits_name_time_and_value(rig):
     slow = replace(rig, motors=(replace(rig.motors[0], speed_limit=2.0 * DEGREE), *rig.motors[1:]))
-    far = chosen('ramp', MOTORS, {'amplitude': '60 deg', 'speed': '60 deg/s', 'duration': '5 s'})
+    far = chosen_trajectory(
+        'ramp', MOTORS, {'amplitude': '60 deg', 'speed': '60 deg/s', 'duration': '5 s'}
+    )
     with pytest.raises(TrajectoryError, match=r'M is sent to 1\.0472 rad at 1\.5 s.*position_lim'):
         check_limits(far, rig)
     with pytest.raises(TrajectoryError, match=r'at 0\.0872665 rad/s at 0\.5 s.*speed_limit'):
-        check_limits(chosen('ramp', MOTORS), slow)
+        check_limits(chosen_trajectory('ramp', MOTORS), slow)
     with pytest.raises(TrajectoryError, match="no motor 'X'; it has L, M"):
-        check_limits(chosen('step', ('X',)), rig)
+        check_limits(chosen_trajectory('step', ('X',)), rig)
 
 
 def test_csv_in_degrees_and_radians(tmp_path):
@@ -182,7 +190,7 @@ def test_csv_in_degrees_and_radians(tmp_path):
     assert one.motors == MOTORS
     assert one.time.tolist() == [0.0, 1.0]
     np.testing.assert_allclose(one.at(1.0), [0.5, math.pi / 2])
-    assert chosen(str(file), MOTORS).position.keys() == one.position.keys()
+    assert chosen_trajectory(str(file), MOTORS).position.keys() == one.position.keys()
 
 
 def test_motors_without_a_column_stay(tmp_path):

@@ -23,7 +23,7 @@ from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.topics import TOPIC_TYPES
 from tendon_ros.base.recording import Channel
 from tendon_ros.base.resources import config_path
-from tendon_ros.estimate import build, estimate_recording
+from tendon_ros.estimate import build_observer, estimate_recording
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.nodes.conversions import from_stamp
 
@@ -154,7 +154,9 @@ def test_offline_gives_exactly_the_numbers_of_the_live_node(bag):
         for c in recording.channels.values()
         for kept in [(c.time >= begin) & (c.time <= end)]
     )
-    offline = estimate_recording(recording, build(load_instrument('paper_rig'), 'contact_angle'))
+    offline = estimate_recording(
+        recording, build_observer(load_instrument('paper_rig'), 'contact_angle')
+    )
     for name in ('estimate/force', 'estimate/pulley_1/position', 'estimate/pulley_3/position'):
         live, again = recording[name], offline[name]
         stamps = np.rint(live.time * 1e9).astype(int)

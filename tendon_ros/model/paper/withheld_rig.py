@@ -18,7 +18,7 @@ from tendon_ros.base.recording import Recording
 from tendon_ros.model.effect_use import checked_use
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 #: the instrument file that the diagnosis is given: the rig with the sensors of its stand
 STAND = 'paper_stand'
@@ -115,7 +115,7 @@ def recorded(
     there = tuple(replace(c, enabled=plan.contact) for c in rig.contacts)
     run = simulate(
         replace(rig, contacts=there),
-        chosen(plan.trajectory, rig.motor_names, plan.settings),
+        chosen_trajectory(plan.trajectory, rig.motor_names, plan.settings),
         rate=RATE,
         seed=seed,
         progress=progress,
