@@ -91,15 +91,22 @@ def loose(ready: Prepared, found: Found) -> Loose | None:
     fit = ready.problem.centred(found.final)
     within = _within(ready.problem, fit)
     beyond = _beyond(ready.problem, fit)
-    off = np.array([*(off for off, _ in within), *(off for _, off, _ in beyond)])
-    variance = np.array([*(v for _, v in within), *(v for _, _, v in beyond)])
+    # what is usual, and what is a fault, does not change with what was supposed this time
+    off = np.array([*(off for off, _ in within), *(off for _, off, _ in beyond)]) * ready.looser
+    variance = np.array([*(v for _, v in within), *(v for _, _, v in beyond)]) * ready.looser**2
     spread, nuisance = _spread(off, variance)
-    late = zip(beyond, nuisance[len(within) :], strict=True)
-    gone = [(cause, abs(off)) for (cause, off, _), likely in late if likely > 0.5]
+    # a number that is hardly known need not move farther than it surely is off
+    nearest = np.abs(off) - NORMAL * np.sqrt(variance)
+    late = slice(len(within), None)
+    gone = [
+        (cause, float(far))
+        for (cause, _, _), far, likely in zip(beyond, nearest[late], nuisance[late], strict=True)
+        if likely > 0.5
+    ]
     if not gone:
         return None
-    looser = max(spread, ROOM * max(off for _, off in gone) / REACH)
-    return Loose(looser * ready.looser, tuple(cause for cause, _ in gone))
+    looser = max(ready.looser, spread, ROOM * max(far for _, far in gone) / REACH)
+    return Loose(looser, tuple(cause for cause, _ in gone))
 
 
 def _within(problem: Problem, fit: Fit) -> list[tuple[float, float]]:
