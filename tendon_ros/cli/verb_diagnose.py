@@ -93,10 +93,10 @@ def run(args: argparse.Namespace) -> None:
         )
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')
-    save_instrument(outcome.instrument, folder / 'instrument.yaml')
     write(folder / 'report.html', diagnosis_page(outcome.diagnosis, outcome.evidence))
-    write(folder / 'README.txt', WHAT_IS_HERE)  # last, so that all that it names is there
     memory.forget()
+    save_instrument(outcome.instrument, folder / 'instrument.yaml')
+    write(folder / 'README.txt', WHAT_IS_HERE)  # last, so that all that it names is there
     print(summary(outcome.diagnosis, outcome.evidence.moved))
     print(f'{folder / "report.html"}: the whole of it, with pictures')
 

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from tendon_ros.diagnose.gap import beyond_noise
 from tendon_ros.diagnose.result import ChannelGap
+from tendon_ros.effects import find
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.cable import hardened
 from tendon_ros.model.effect_use import in_force
-from tendon_ros.model.instrument import contact_place, Curve, Instrument
+from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
 
 
 def patched(
@@ -70,7 +71,9 @@ def patched(
     )
     # a motor's torque constant is no number of the file: it stays an effect
     known = [t.use(z) for t, z in far if t.given or t.quantity == 'torque_gain']
-    accepted = [model.use(k) for k, cause in enumerate(model.causes) if cause.acts_in(recording)]
+    accepted = [
+        _whole(model.use(k)) for k, cause in enumerate(model.causes) if cause.acts_in(recording)
+    ]
     bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
     return replace(
@@ -82,6 +85,13 @@ def patched(
         contacts=contacts,
         effects=in_force(instrument.effects, [*known, *accepted, *bent]),
     )
+
+
+def _whole(use: EffectUse) -> EffectUse:
+    """Return an effect with the parameters that no search moves, as a file has it."""
+    if use.instead:
+        return use
+    return replace(use, parameters={**find(use.effect).neutral, **use.parameters})
 
 
 def doubted(instrument: Instrument, gaps: Sequence[ChannelGap]) -> Instrument:
