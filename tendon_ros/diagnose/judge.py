@@ -21,6 +21,7 @@ from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.undoing import its_own
 from tendon_ros.diagnose.worth import by_channel, gains, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -164,8 +165,8 @@ def signs_beside(
     )
 
 
-#: probability that a cause has at most which spoils what no fit saw, which others undo, or which
-#: may be what laws get wrong once
+#: probability that a cause has at most which spoils what no fit saw, which others undo, which only
+#: makes less of noise, or which may be what laws get wrong once
 IDLE = 0.3
 #: part of what a cause gains per sample that is fitted which it may lose elsewhere
 NOTHING = 0.01
@@ -189,6 +190,37 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     nothing = NOTHING * max(0.0, gained) * sum(int(mask.sum()) for mask in ready.held.masks)
     # what cannot be computed there is no help either
     return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing
+
+
+#: noise power per sample up to which what is left without a cause may be noise
+NOISY = 1.1
+#: part of what a cause takes away that neighbouring samples share, unless it is none; and the same
+#: where guessed numbers can do most of what it does, all but so much of the amplitude
+SHARED, SHARED_BESIDE, APART = 0.3, 0.6, 0.5
+
+
+def takes_noise(problem: Problem, found: Found, k: int) -> bool:
+    """
+    Return whether a cause only makes less of noise.
+
+    How much of an encoder's counts reaches a torque depends on the inertia that they are
+    multiplied by. A late encoder, for one, lets a guessed inertia be small: less is left, but what
+    was left before was noise and no gap.
+
+    :param problem: the fitted bins.
+    :param found: what the search has found.
+    :param k: which cause.
+    :return: whether nothing but noise is left without it, and little of what it takes away has any
+        form; more of it must have where guesses could do most of it as well.
+    """
+    without, final = found.without[k], found.final
+    if without.cost > NOISY * len(without.left):
+        return False
+    shared = problem.structured(without.left) - problem.structured(final.left)
+    gain = gains(problem, without, final)[0]
+    if shared < SHARED * gain:
+        return True
+    return shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART
 
 
 def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:
@@ -216,7 +248,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     drowned = signs.worth < signs.beside
     happened = bool(found.final.model.causes[k].instants)
     spoilt = not happened and spoils(ready, found, found.without[k])
-    believed = not (spoilt or luck or drowned)
+    noise = not happened and takes_noise(ready.problem, found, k)
+    believed = not (spoilt or luck or drowned or noise)
     return likely if believed else min(IDLE, likely)
 
 

@@ -76,24 +76,44 @@ def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
     :param state: with causes.
     :return: which causes.
     """
-    guessed = np.array([t.guessed for t in problem.tolerances], dtype=np.bool_)
-    if not guessed.any():
+    columns = _guessed(problem, state)
+    if not columns.size:
         return frozenset()
-    columns = state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed)
-    slope = state.slope[:, columns]
-    moved = slope @ problem.pack(state.model)[columns]
-    normal = slope.T @ slope + np.diag(problem.prior(state.model)[columns] + 1e-9)
+    moved = state.slope[:, columns] @ problem.pack(state.model)[columns]
     found = set()
     for k, cause in enumerate(state.model.causes):
         whole = change(problem, state, k)
-        own = whole - slope @ np.linalg.solve(normal, slope.T @ whole)
         # they could do it as well, and have gone where they undo it
-        absorbs = own @ own < ITS_OWN**2 * (whole @ whole)
+        absorbs = its_own(problem, state, k) < ITS_OWN
         opposes = moved @ whole < OPPOSED * np.sqrt((moved @ moved) * (whole @ whole))
         # what happens once is no number's doing
         if absorbs and opposes and not cause.instants:
             found.add(k)
     return frozenset(found)
+
+
+def its_own(problem: Problem, state: Fit, k: int) -> float:
+    """
+    Return the part of what a cause does, as an amplitude, that guessed numbers cannot do as well.
+
+    :param problem: the data.
+    :param state: with the cause.
+    :param k: which cause.
+    :return: 0 to 1; 1 where nothing is guessed.
+    """
+    columns = _guessed(problem, state)
+    slope = state.slope[:, columns]
+    normal = slope.T @ slope + np.diag(problem.prior(state.model)[columns] + 1e-9)
+    whole = change(problem, state, k)
+    own = whole - slope @ np.linalg.solve(normal, slope.T @ whole)
+    power = float(whole @ whole)
+    return math.sqrt(float(own @ own) / power) if 0.0 < power < math.inf else 1.0
+
+
+def _guessed(problem: Problem, state: Fit) -> NDArray[np.intp]:
+    """Return which columns of a state's derivatives belong to guessed numbers."""
+    guessed = np.array([t.guessed for t in problem.tolerances], dtype=np.bool_)
+    return state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed)
 
 
 def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:

@@ -1,0 +1,53 @@
+"""What only makes less of noise is no cause."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose import judge
+from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import IDLE, takes_noise
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
+
+
+@pytest.mark.parametrize(
+    ('before', 'shared', 'apart', 'noise'),
+    [
+        (0.9, 0.0, 1.0, True),
+        (0.9, 0.2, 1.0, False),
+        # guesses could have done it
+        (0.9, 0.2, 0.3, True),
+        (0.9, 0.35, 0.3, False),
+        # more than noise is left without it, whatever its form
+        (3.0, 0.0, 0.3, False),
+    ],
+)
+def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
+    monkeypatch, before, shared, apart, noise
+):
+    def fit(power):
+        return SimpleNamespace(left=np.ones(100), cost=100.0 * power)
+
+    without, final = fit(before), fit(before - 0.5)
+    monkeypatch.setattr(judge, 'its_own', lambda *_: apart)
+    monkeypatch.setattr(judge, 'gains', lambda *_: (0.5, 0.5))
+    problem = SimpleNamespace(structured=lambda left: shared if left is without.left else 0.0)
+    found = SimpleNamespace(without=[without], final=final)
+    assert takes_noise(problem, found, 0) == noise
+
+
+def test_such_a_cause_is_not_believed(measured_on, monkeypatch):
+    body = load_instrument('single_body')
+    run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}))
+    problem = prepared([run], body)
+    start = problem.problem.fitted(problem.problem.empty)
+    friction = Candidate('coulomb_friction', 'pulley_body')
+    final = problem.problem.fitted(start.model.joined(friction, {'torque': 0.2}))
+    found = Found(states=[start, final], rivals=[[]], without=[start])
+    assert belief(problem, found).weighed[0].chance > IDLE
+    monkeypatch.setattr(judge, 'takes_noise', lambda *_: True)
+    assert belief(problem, found).weighed[0].chance == IDLE
