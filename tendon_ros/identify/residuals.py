@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
-from tendon_ros.identify.rollout import Rollouts, ROUGHER
+from tendon_ros.identify.rollout import fineness, Rollouts, ROUGHER
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse
 
@@ -65,7 +65,8 @@ class Residuals:
 
     def rougher(self) -> Self:
         """Return the same by rollouts that are as rough as any may be: for first looks."""
-        rollouts = self.rollouts.like(self._segments, ROUGHER[0])
+        roughest = ROUGHER[0] * fineness(self.rollouts.instrument)
+        rollouts = self.rollouts.like(self._segments, roughest)
         return type(self)(rollouts, self.tolerances, self._used)
 
     @property

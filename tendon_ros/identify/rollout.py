@@ -32,6 +32,9 @@ USUAL = 0.2  # part of a motor's torques that no unknown limit cuts off
 TOLERANCE = 4e-6
 #: the same where nothing that is measured notices, the roughest first
 ROUGHER = (1e-4, 2e-5)
+#: [rad] counts that are finer ask for finer steps: on a straight axis a radian stands for a metre,
+#: and friction builds up over some micrometres
+FINE = 2e-5
 #: part of what the right model may be off that this may change of the file's. Dry friction makes
 #: it some five times more, and derivatives are taken from changes of a tenth
 UNNOTICED = 4e-3
@@ -48,7 +51,7 @@ class Rollouts:
     :param instrument: the network; its own effects are always in force.
     :param segments: what was measured.
     :param jobs: threads for predictions that do not depend on each other.
-    :param tolerance: of a step [rad].
+    :param tolerance: of a step [rad]; as fine as the counts ask for where None.
     """
 
     def __init__(
@@ -56,12 +59,12 @@ class Rollouts:
         instrument: Instrument,
         segments: Sequence[Segment],
         jobs: int = 1,
-        tolerance: float = TOLERANCE,
+        tolerance: float | None = None,
     ) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
         self.jobs = jobs
-        self.tolerance = tolerance
+        self.tolerance = TOLERANCE * fineness(instrument) if tolerance is None else tolerance
         self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
         self._base = tuple(
@@ -261,14 +264,26 @@ def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
     :param segments: what was measured, with its noise and what models leave of it.
     :return: a tolerance of a step [rad].
     """
-    fine = _of_the_file(instrument, segments, TOLERANCE)
-    for tolerance in ROUGHER:
+    unit = fineness(instrument)
+    fine = _of_the_file(instrument, segments, unit * TOLERANCE)
+    for tolerance in (unit * step for step in ROUGHER):
         rough = _of_the_file(instrument, segments, tolerance)
         changes = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(rough, fine, strict=True)]
         # infinite where the file's own model diverges
         if float(np.max(changes)) < UNNOTICED:
             return tolerance
-    return TOLERANCE
+    return unit * TOLERANCE
+
+
+def fineness(instrument: Instrument) -> float:
+    """
+    Return how much finer than usual an instrument's angles are to be computed.
+
+    :param instrument: the network.
+    :return: 1, or less where a motor's encoder counts finer than any of a joint.
+    """
+    counts = [s.resolution for s in instrument.sensors if s.kind == 'angle' and s.resolution > 0.0]
+    return min([1.0, *(count / FINE for count in counts)])
 
 
 def _of_the_file(

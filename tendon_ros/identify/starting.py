@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.rollout import USUAL
+from tendon_ros.identify.rollout import fineness, USUAL
 
 FloatArray = NDArray[np.float64]
 Start = tuple[Candidate, dict[str, float]]
 
 EVENTS = 2  # starts of one event: in all recordings, or in one of them
 BEGUN = 0.1  # part of a recording before an event, and after: else it has always been there
+WAVES = 400.0  # of a ripple over a turn that are looked for, more where counts are finer
 LEVELS = 5  # tried for the limit of a motor's torque
 LASTS = 0.3  # part of a recording from which on what lasts is no event
 
@@ -109,7 +110,9 @@ class Starting:
         encoded = {d.motor for d in drives(instrument) if not d.by_torque}
         if not motors or motors[0].name not in encoded:
             return [values]
-        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, 400.0, 2.0)])
+        most = WAVES / fineness(instrument)
+        [high] = [p.high for p in candidate.parameters if p.search == 'cycles']
+        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, min(most, high), 2.0)])
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
         for n, c, left in self._problem.groups(self._fit.left):
