@@ -22,6 +22,7 @@ from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
+from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -89,6 +90,7 @@ def diagnose(
     given = instrument
     instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
+    instrument, counted = as_counted(intake.recordings, instrument)
     ready = prepared(intake.recordings, instrument, jobs)
     measured = {name for r in intake.recordings for name in r.channels}
     candidates = everyone(
@@ -142,6 +144,7 @@ def diagnose(
         next_experiment=ahead,
         left_out=(
             *intake.left_out,
+            *counted,
             *said_of_torque(instrument),
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
