@@ -113,7 +113,7 @@ def its_own(problem: Problem, state: Fit, k: int) -> float:
 def _guessed(problem: Problem, state: Fit) -> NDArray[np.intp]:
     """Return which columns of a state's derivatives belong to guessed numbers."""
     guessed = np.array([t.guessed for t in problem.tolerances], dtype=np.bool_)
-    return state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed)
+    return np.asarray(state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed))
 
 
 def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:
