@@ -27,6 +27,7 @@ BoolArray = NDArray[np.bool_]
 
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
+STEPS = 0.5  # part of its samples that are as the one before, of a torque that moves by steps
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
@@ -176,8 +177,15 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
 
 
 def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatArray:
-    """Return a torque at the middles of the bins: it may jump, and is not smoothed."""
+    """
+    Return a torque at the middles of the bins: it may jump, and is not smoothed.
+
+    What moves by steps is a command, such as a voltage, and holds until the next. Taken for a line
+    from sample to sample it would begin to rise half a sample before it does.
+    """
     middles = start + period * (np.arange(bins, dtype=np.float64) + 0.5)
+    if np.mean(np.diff(channel.value) == 0.0) > STEPS:
+        return channel.value[np.searchsorted(channel.time, middles, side='right') - 1]
     return np.asarray(channel.at(middles), dtype=np.float64)
 
 

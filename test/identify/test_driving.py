@@ -76,3 +76,20 @@ def test_gain_and_limit_are_those_of_the_motor(belt):
     ]
     [[quarter]] = rollouts.predicted([limits])
     assert quarter[-1] == pytest.approx(0.25 * plain[-1], rel=1e-3)
+
+
+@pytest.mark.parametrize(('steps', 'late'), [(True, 0.0), (False, 0.01)])
+def test_a_command_that_moves_by_steps_holds_until_the_next(belt, steps, late):
+    """Fifty readings a second: taken for a line, a step would begin half of one too soon."""
+    time = 0.02 * np.arange(200)
+    level = np.where((time // 0.5) % 2, 0.3, -0.2)
+    own = level if steps else level + 1e-6 * np.arange(200)
+    channels = {
+        s.channel: Channel(s.channel, time, own if s.kind == 'motor_torque' else 0.0 * own)
+        for s in belt.sensors
+    }
+    segment = segment_of(belt, Recording('belt', channels), 0.02)
+    row = segment.motion.value[len(segment.prescribed)]
+    # the first step comes at half a second; a bin's middle is a hundredth after its beginning
+    rise = float(np.interp(0.05, row[20:30], segment.time[20:30]))
+    assert rise == pytest.approx(0.5 - late, abs=1e-3)
