@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 
+#: times that a guess is off by, from which on one doubts the units of what was recorded
+ABSURD = 10.0
+
+
 @dataclass(frozen=True)
 class Trace:
     """
@@ -68,6 +72,16 @@ class Moved:
     ci95: tuple[float, float]
     unit: str
     guessed: bool = False
+
+    @property
+    def absurd(self) -> bool:
+        """Whether a guess is off by so much that a unit is more likely than a bad guess."""
+        if not self.guessed or self.unit != '1':
+            return False
+        low, high = self.ci95
+        return (self.value < 1.0 / ABSURD and high < 2.0 / ABSURD) or (
+            self.value > ABSURD and low > 0.5 * ABSURD
+        )
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
@@ -109,6 +111,22 @@ def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
         )
         if not still
     )
+
+
+def absurd_words(moved: Sequence[Moved]) -> list[str]:
+    """
+    Say which guesses turned out so far off that the reason is rather another unit.
+
+    :param moved: the numbers of the file as they were fitted.
+    :return: a sentence for each.
+    """
+    return [
+        f'{one.place}: its {one.quantity.replace("_", " ")} fits best as {one.value:.3g} times '
+        'what the file guesses; where that cannot be, a recorded channel has another unit than '
+        'its import says'
+        for one in moved
+        if one.absurd
+    ]
 
 
 def rivals(found: Found) -> tuple[Rival, ...]:

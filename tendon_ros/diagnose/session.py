@@ -23,6 +23,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.counts import as_counted
+from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -130,6 +131,7 @@ def diagnose(
     if plan:
         names = sorted(measured)
         ahead = next_experiments(instrument, names, problem, found, held.companies, jobs)
+    moved = gather.moved(heard.problem, final)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -145,9 +147,11 @@ def diagnose(
         left_out=(
             *intake.left_out,
             *counted,
+            *strong_words(intake.recordings, instrument),
             *said_of_torque(instrument),
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
+            *gather.absurd_words(moved),
             *cut,
         ),
     )
@@ -158,7 +162,7 @@ def diagnose(
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),
         floors=gather.floors(heard.problem),
-        moved=gather.moved(heard.problem, final),
+        moved=moved,
         told=telling.told(heard.problem, final),
         rivals=gather.rivals(found),
         seconds=time.monotonic() - began,

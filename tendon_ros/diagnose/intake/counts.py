@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.quantity import written
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.intake.units import factor_name
 from tendon_ros.model.instrument import Instrument, Sensor
 
 FloatArray = NDArray[np.float64]
@@ -40,10 +41,12 @@ def as_counted(
     for sensor in instrument.sensors:
         step = _step_of(sensor, recordings)
         if step > COARSER * sensor.resolution:
+            unit = factor_name(step / sensor.resolution, sensor.kind)
             said.append(
                 f'{sensor.name}: its readings come in steps of {written(step, "rad")}, more '
-                f'coarsely than the {written(sensor.resolution, "rad")} of the instrument file; '
-                'what the recordings say is taken (log more digits, or correct the encoder)'
+                f'coarsely than the {written(sensor.resolution, "rad")} of the instrument file'
+                f'{f", as if {unit}" if unit else ""}; what the recordings say is taken (log more '
+                'digits, or correct the encoder or the unit)'
             )
             sensors.append(replace(sensor, resolution=step))
         else:

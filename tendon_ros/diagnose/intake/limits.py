@@ -1,5 +1,5 @@
 """
-Motor positions against the limits of the instrument file.
+Motor positions and torques against the limits of the instrument file.
 
 Limits are of what may be commanded: where what was asked lies within them, a loop that shakes is
 no other rig and worth a diagnosis.
@@ -21,6 +21,8 @@ from tendon_ros.model.instrument import Instrument, Motor
 FORGIVEN = 0.15
 #: times a limit: further off, a unit is more likely than another rig
 LARGE = 5.0
+#: the same of a torque, whose unit a file may have guessed
+HUGE = 20.0
 
 
 def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
@@ -32,6 +34,33 @@ def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Si
     :return: the others, and sentences.
     """
     return sifted(recordings, lambda recording: _fault(recording, instrument))
+
+
+def strong_words(recordings: Sequence[Recording], instrument: Instrument) -> tuple[str, ...]:
+    """
+    Say which motors give so much more than they can that the unit must be another.
+
+    Nothing is left out for it: a limit may be a guess.
+
+    :param recordings: of the instrument.
+    :param instrument: with the limits of its motors and controllers.
+    :return: a sentence for each motor.
+    """
+    limits = {m.name: min(m.torque_limit, m.controller.limit) for m in instrument.motors}
+    found = []
+    for sensor in instrument.sensors:
+        if sensor.kind != 'motor_torque':
+            continue
+        spans = [_span(r, sensor.channel) for r in recordings if sensor.channel in r]
+        largest = max((float(np.abs(span).max()) for span in spans), default=0.0)
+        limit = limits[sensor.of]
+        if largest > HUGE * limit:
+            found.append(
+                f'{sensor.channel} reaches {largest:.4g} N m, {largest / limit:.0f} times what '
+                f'motor {sensor.of} of {instrument.name} can ({limit:.4g} N m); correct its unit '
+                'on import, or the limit'
+            )
+    return tuple(found)
 
 
 def _fault(recording: Recording, instrument: Instrument) -> str:
