@@ -32,6 +32,19 @@ def bodies(instrument: Instrument) -> dict[str, str]:
     return motors | read
 
 
+def alone(instrument: Instrument) -> frozenset[str]:
+    """
+    Return the bodies that nothing is linked with, and their motors: what plays needs a second one.
+
+    :param instrument: the file.
+    :return: places.
+    """
+    linked = {f'pulley_{name}' for link in instrument.links for name in link.route}
+    every = {f'pulley_{p.name}': f'pulley_{p.name}' for p in instrument.pulleys}
+    every |= turned(instrument)
+    return frozenset(place for place, pulley in every.items() if pulley not in linked)
+
+
 def of_one_body(instrument: Instrument, one: Candidate, other: Candidate) -> bool:
     """
     Return whether two causes act at one place, or on one body.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from tendon_ros.diagnose.found import Found
@@ -17,6 +17,8 @@ from tendon_ros.identify.fit import Fit
 
 #: a cause is named from here on
 NAMED = 0.5
+#: effects that change what links see of a body
+BETWEEN = frozenset({'backlash', 'eccentricity'})
 #: norm of a signature in noise deviations below which an effect cannot be seen
 SHOWS = 5.0
 #: part of a signature that must be its own, not what tolerances and causes can do as well
@@ -92,6 +94,7 @@ def judged(
     causes: Sequence[Cause],
     chances: Sequence[float],
     candidates: Sequence[Candidate],
+    lone: Collection[str] = (),
 ) -> tuple[Judged, ...]:
     """
     Return every candidate with its probability, and whether these data could have shown it.
@@ -100,6 +103,7 @@ def judged(
     :param causes: that are named.
     :param chances: of all causes that the search ended with.
     :param candidates: all that may be named.
+    :param lone: places of bodies that nothing is linked with.
     :return: most probable first.
     """
     named = {(c.effect, c.place): c for c in causes}
@@ -125,6 +129,10 @@ def judged(
         why = ''
         if alike.get(key):
             why = f'the data cannot tell it from {", ".join(alike[key])}'
+        elif candidate.effect in BETWEEN and candidate.place in lone:
+            why = (
+                'it acts between bodies: describe what is behind it as a second one, coupled to it'
+            )
         elif proposal is None or proposal.seen < SHOWS:
             why = 'at a size worth looking for it leaves no trace in these channels and motions'
         elif proposal.own < OWN * proposal.seen:

@@ -14,6 +14,7 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.enough import KEPT
@@ -139,7 +140,9 @@ def diagnose(
         where=places.listed,
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         beside=tuple(sorted(beside, key=lambda c: c.shrink.after - c.shrink.without_this)),
-        candidates=judged(found, causes, [w.chance for w in held.weighed], candidates),
+        candidates=judged(
+            found, causes, [w.chance for w in held.weighed], candidates, alone(instrument)
+        ),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.rollout import FINE, fineness, Rollouts, ROUGHER, TOLERANCE
 from tendon_ros.model.instrument_file import load_instrument
@@ -57,3 +58,12 @@ def test_friction_and_the_waves_of_its_screw_are_told(axis, measured_on, quick):
     assert rubs.effect in {'presliding_friction', 'coulomb_friction', 'stribeck_friction'}
     size = next(v for k, v in rubs.parameters.items() if k in {'torque', 'sliding'})
     assert size.value == pytest.approx(20.0, rel=0.1)
+
+
+def test_what_plays_needs_a_second_body(axis, bench, measured_on, quick):
+    assert alone(axis) == {PLACE, 'motor_carriage'}
+    assert alone(bench) == frozenset()
+    judged = quick([measured_on(axis, settings=SLOW, seed=2)], axis).diagnosis.candidates
+    [play] = [c for c in judged if c.effect == 'backlash']
+    assert not play.identifiable
+    assert 'second one' in play.why_not
