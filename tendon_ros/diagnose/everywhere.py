@@ -25,6 +25,8 @@ USUAL = ('coulomb_friction', 'tension_friction', 'backlash', 'joint_spring', 'lo
 LINEAR = ('joint_spring', 'load_cell_bias')
 #: parts of what is typical that the others have at first: of several ways one may end early
 BEGINNINGS = (1.0, 0.3)
+#: power a sample, of what stays of channels, that is nothing
+NOTHING = 0.01
 #: rounds of the fit of all of it: from typical sizes the way is long
 FAR = 12
 #: rounds of fits that tell what is missed, with derivatives as they are, and of those with less
@@ -82,6 +84,25 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
             return steps.settled(state.model)
         state = problem.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
     return None
+
+
+def without_idle(steps: Steps, state: Fit) -> Fit:
+    """
+    Return a state without the causes of which nothing is missed.
+
+    What was needed while channels weighed by their noise may be worth nothing by other weights.
+
+    :param steps: of the search.
+    :param state: with causes.
+    :return: with those that are worth anything.
+    """
+    least = NOTHING * len(state.left)
+    found = state
+    while (smaller := _least_dropped(steps, found)) is not None:
+        if not smaller.cost < found.cost + least:
+            break
+        found = smaller
+    return state if found is state else steps.settled(found.model)
 
 
 def _idle_dropped(problem: Problem, state: Fit, least: float) -> Fit | None:

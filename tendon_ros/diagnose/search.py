@@ -15,7 +15,7 @@ import numpy as np
 from tendon_ros.diagnose.asking import asked_again, may_be_signless
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.everywhere import thinned_out
+from tendon_ros.diagnose.everywhere import thinned_out, without_idle
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.guesses import astray, better, far_off, under_way
 from tendon_ros.diagnose.memory import Memory
@@ -102,7 +102,9 @@ class Search:
             found.states.append(state)
         if self._begun is not None and self._begun.causes and len(found.states) == 1:
             earlier = self._steps.settled(self._begun)
-            if not self.problem.by_misfit:  # else it is what was needed of all that is usual
+            if self.problem.by_misfit:  # it is what was needed of all that is usual
+                earlier = without_idle(self._steps, earlier)
+            else:
                 earlier = self._steps.pruned(found.start, earlier)
             if self._believed(found, found.start, earlier):
                 state = earlier

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose import search
-from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL
+from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL, without_idle
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -44,6 +44,24 @@ def test_only_what_is_needed_stays(measured_on):
     fit = thinned_out(steps, problem.fitted(problem.empty), 8)
     assert [(c.effect, c.place) for c in fit.model.causes] == [friction[:2]]
     assert problem.structured(fit.left) < 0.1
+
+
+def test_what_is_worth_nothing_by_other_weights_goes(measured_on):
+    """Springs that are relaxed turns away, and a bias: together no torque, one by one a large one."""
+    body = load_instrument('single_body')
+    friction = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    run = measured_on(body, friction)
+    problem = prepared([run], body).problem
+    model = problem.empty.joined(Candidate(*friction[:2]), {'torque': 0.2})
+    model = model.joined(Candidate('torque_bias', 'motor_body'), {'torque': 0.02})
+    model = model.joined(
+        Candidate('joint_spring', 'pulley_body'), {'stiffness': 2e-4, 'rest': -94.0}
+    )
+    state = problem.fitted(model, rounds=3)
+    steps = Steps(problem, [], 1, lambda *_: None)
+    left = without_idle(steps, state)
+    assert left.model.causes == (Candidate(*friction[:2]),)
+    assert without_idle(steps, left) is left
 
 
 def test_guesses_that_explain_all_but_noise_ask_for_no_many(measured_on, monkeypatch):
