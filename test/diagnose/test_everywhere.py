@@ -47,7 +47,7 @@ def test_only_what_is_needed_stays(measured_on):
 
 
 def test_what_is_worth_nothing_by_other_weights_goes(measured_on):
-    """Springs that are relaxed turns away, and a bias: together no torque, one by one a large one."""
+    """A spring that is relaxed turns away, and a bias: no torque together, a large one each."""
     body = load_instrument('single_body')
     friction = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
     run = measured_on(body, friction)
