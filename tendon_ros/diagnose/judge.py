@@ -23,6 +23,7 @@ from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import its_own
 from tendon_ros.diagnose.worth import by_channel, gains, TAKES_EVENT, TIMES_EVENT
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
@@ -203,18 +204,21 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     """
     Return whether a cause only makes less of noise.
 
-    How much of an encoder's counts reaches a torque depends on the inertia that they are
-    multiplied by. A late encoder, for one, lets a guessed inertia be small: less is left, but what
-    was left before was noise and no gap.
+    Much of the noise is what the counts of encoders that drive the model make of its torques, and
+    how much depends on the inertia that they are multiplied by. If one is late, for one, a guessed
+    inertia may be small: less is left, but what was left before was noise and no gap.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
-    :return: whether nothing but noise is left without it, and little of what it takes away has any
-        form; more of it must have where guesses could do most of it as well.
+    :return: whether it is one of these encoders, nothing but noise is left without it, and little
+        of what it takes away has any form; more of it must have where guesses could do most of it
+        as well.
     """
     without, final = found.without[k], found.final
-    if without.cost > NOISY * len(without.left):
+    driving = {d.sensor.name for d in drives(problem.rollouts.instrument)}
+    place = final.model.causes[k].place
+    if place not in driving or without.cost > NOISY * len(without.left):
         return False
     shared = problem.structured(without.left) - problem.structured(final.left)
     gain = gains(problem, without, final)[0]

@@ -15,27 +15,34 @@ from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.mark.parametrize(
-    ('before', 'shared', 'apart', 'noise'),
+    ('place', 'before', 'shared', 'apart', 'noise'),
     [
-        (0.9, 0.0, 1.0, True),
-        (0.9, 0.2, 1.0, False),
+        ('encoder_body', 0.9, 0.0, 1.0, True),
+        ('encoder_body', 0.9, 0.2, 1.0, False),
         # guesses could have done it
-        (0.9, 0.2, 0.3, True),
-        (0.9, 0.35, 0.3, False),
+        ('encoder_body', 0.9, 0.2, 0.3, True),
+        ('encoder_body', 0.9, 0.35, 0.3, False),
         # more than noise is left without it, whatever its form
-        (3.0, 0.0, 0.3, False),
+        ('encoder_body', 3.0, 0.0, 0.3, False),
+        # it has nothing to do with how counts become torques
+        ('pulley_body', 0.9, 0.0, 1.0, False),
     ],
 )
 def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
-    monkeypatch, before, shared, apart, noise
+    monkeypatch, place, before, shared, apart, noise
 ):
+    model = SimpleNamespace(causes=[SimpleNamespace(place=place)])
+    rollouts = SimpleNamespace(instrument=load_instrument('single_body'))
+
     def fit(power):
-        return SimpleNamespace(left=np.ones(100), cost=100.0 * power)
+        return SimpleNamespace(left=np.ones(100), cost=100.0 * power, model=model)
 
     without, final = fit(before), fit(before - 0.5)
     monkeypatch.setattr(judge, 'its_own', lambda *_: apart)
     monkeypatch.setattr(judge, 'gains', lambda *_: (0.5, 0.5))
-    problem = SimpleNamespace(structured=lambda left: shared if left is without.left else 0.0)
+    problem = SimpleNamespace(
+        structured=lambda left: shared if left is without.left else 0.0, rollouts=rollouts
+    )
     found = SimpleNamespace(without=[without], final=final)
     assert takes_noise(problem, found, 0) == noise
 
