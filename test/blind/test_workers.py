@@ -11,6 +11,7 @@ import pytest
 MAIN = """
 import os
 from pathlib import Path
+import signal
 import time
 
 from tendon_ros.blind.store import each
@@ -22,6 +23,8 @@ def told(path):
 
 
 if __name__ == '__main__':
+    # what a shell runs in the background ignores Ctrl-C
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     each(told, [(name,) for name in '0123'], 2, None)
 """
 
@@ -54,5 +57,9 @@ def test_who_is_stopped_takes_its_workers_along(number, tmp_path):
         workers = [int(f.read_text()) for f in files]
         assert all(alive(w) for w in workers)
         run.send_signal(number)
+        try:
+            run.wait(60.0)
+        finally:
+            run.kill()
     assert until(lambda: not any(alive(w) for w in workers))
     assert not (tmp_path / '2').exists()
