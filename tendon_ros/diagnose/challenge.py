@@ -35,6 +35,9 @@ from tendon_ros.identify.worths import worths
 
 #: rivals that are fitted as carefully as the cause itself where only far better ones matter
 BRIEFLY = 2
+#: times a tie that a law which holds another is ahead if it need not pay for its parameters: a
+#: recording of some seconds says little of what they cost
+PAYS = 4.0
 REPLACED = 6  # causes at most that challenges replace
 
 
@@ -211,11 +214,12 @@ class Challenge:
             # a law that holds another is never worse: its parameters pay for themselves, or that
             # other one is named, and it among those that cannot be told from it
             if is_part(rival, cause):
-                return bet
+                return bet and -ahead <= PAYS * tie(self._problem, state)
             if more < 0:
                 return as_good(self._problem, fit, state)
             if more > 0:
-                return ahead > tie(self._problem, fit) and (bet or not is_part(cause, rival))
+                equal = tie(self._problem, fit)
+                return ahead > (PAYS * equal if is_part(cause, rival) and not bet else equal)
             return fit.cost < BETTER * state.cost
 
         for rival in rivals[:2]:
