@@ -14,7 +14,7 @@ from tendon_ros.diagnose.bent import degenerate, excuses
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.one_body import divide, merge
-from tendon_ros.diagnose.parsimony import as_good, criterion
+from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
 from tendon_ros.diagnose.rivals import (
     BETTER,
@@ -35,9 +35,6 @@ from tendon_ros.identify.worths import worths
 
 #: rivals that are fitted as carefully as the cause itself where only far better ones matter
 BRIEFLY = 2
-#: times a tie that a law which holds another is ahead if it need not pay for its parameters: a
-#: recording of some seconds says little of what they cost
-PAYS = 4.0
 REPLACED = 6  # causes at most that challenges replace
 
 
@@ -210,16 +207,16 @@ class Challenge:
         def wins(rival: Candidate, fit: Fit) -> bool:
             more = len(rival.parameters) - len(cause.parameters)
             ahead = (state.cost - fit.cost) / len(state.left)
-            bet = criterion(self._problem, fit) < criterion(self._problem, state)
-            # a law that holds another is never worse: its parameters pay for themselves, or that
-            # other one is named, and it among those that cannot be told from it
+            # a law that holds another is never worse: it pays for its parameters, or that other
+            # one is named, and it among those that cannot be told from it
             if is_part(rival, cause):
-                return bet and -ahead <= PAYS * tie(self._problem, state)
+                return not pays(self._problem, state, fit)
+            if is_part(cause, rival) and not pays(self._problem, fit, state):
+                return False
             if more < 0:
                 return as_good(self._problem, fit, state)
             if more > 0:
-                equal = tie(self._problem, fit)
-                return ahead > (PAYS * equal if is_part(cause, rival) and not bet else equal)
+                return ahead > tie(self._problem, fit)
             return fit.cost < BETTER * state.cost
 
         for rival in rivals[:2]:

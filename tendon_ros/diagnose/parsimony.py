@@ -8,6 +8,9 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.identify.fit import Fit, Problem
 
+#: times a tie that a law is ahead which need not pay: some seconds say little of what it costs
+AHEAD = 4.0
+
 
 def criterion(problem: Problem, fit: Fit) -> float:
     """
@@ -39,3 +42,17 @@ def as_good(problem: Problem, simpler: Fit, state: Fit) -> bool:
     if behind > tie(problem, state):
         return False
     return criterion(problem, simpler) < criterion(problem, state)
+
+
+def pays(problem: Problem, wider: Fit, simpler: Fit) -> bool:
+    """
+    Return whether a law that holds another one pays for the parameters that it has more.
+
+    :param problem: the data.
+    :param wider: with the law.
+    :param simpler: with the other one in its place.
+    :return: whether it is the better bet, or ahead by far more than a tie.
+    """
+    ahead = (simpler.cost - wider.cost) / len(wider.left)
+    bet = criterion(problem, wider) < criterion(problem, simpler)
+    return bet or ahead > AHEAD * tie(problem, wider)

@@ -110,9 +110,9 @@ class Starting:
         encoded = {d.motor for d in drives(instrument) if not d.by_torque}
         if not motors or motors[0].name not in encoded:
             return [values]
-        most = WAVES / fineness(instrument)
-        [high] = [p.high for p in candidate.parameters if p.search == 'cycles']
-        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, min(most, high), 2.0)])
+        [cycles] = [p for p in candidate.parameters if p.search == 'cycles']
+        most = min(WAVES / fineness(instrument), cycles.high)
+        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, most, 2.0)])
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
         for n, c, left in self._problem.groups(self._fit.left):
@@ -127,11 +127,10 @@ class Starting:
             wave -= wave.mean(1, keepdims=True)
             part = left[::2] - left[::2].mean()
             power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)
-        [name] = [p.name for p in candidate.parameters if p.search == 'cycles']
         peaks = [k for k in range(1, len(grid) - 1) if power[k - 1] <= power[k] >= power[k + 1]]
         peaks.sort(key=lambda k: -power[k])
         shapes = starts(candidate)
-        return [one | {name: float(grid[k])} for k in peaks[:3] for one in shapes]
+        return [one | {cycles.name: float(grid[k])} for k in peaks[:3] for one in shapes]
 
     def _levels(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
         """Try limits between the largest torque that the motor reported and the usual one."""
