@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import is_constant
+from tendon_ros.diagnose.bent import is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
@@ -78,7 +78,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
     undone |= ahead.late if ahead else frozenset()
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
-    able = [k for k in range(len(causes)) if k not in undone]
+    able = [
+        k
+        for k, cause in enumerate(causes)
+        if k not in undone and not spent(cause, found.final.model.values(k))
+    ]
     together = companies(ready, found, weighed, able, left)
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
@@ -123,7 +127,8 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     # beside a strong effect many differ by less than its law may be wrong by
     as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
     vague = len({cause.effect} | as_good) > ALIKE or cause in found.unmet
-    vague |= is_constant(ready.problem, cause, found.final.model.values(k))
+    values = found.final.model.values(k)
+    vague |= is_constant(ready.problem, cause, values) or spent(cause, values)
     return Weighed(
         cause=cause,
         equal=equal,

@@ -36,6 +36,8 @@ YIELDS = 0.25
 #: [rad] that no joint turns, and times as far as anything turns, if that is farther: a spring that
 #: is relaxed beyond is a constant torque
 TURN, BEYOND = 2.0 * math.pi, 2.0
+#: times a factor may still go before its bound, where it is as good as there
+SPENT = 1.5
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -95,6 +97,23 @@ def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, flo
     angles = [np.abs(segment.motion.value) for segment in problem.rollouts.segments]
     turned = max((float(a.max()) for a in angles if a.size), default=0.0)
     return abs(values['rest']) > max(TURN, BEYOND * turned)
+
+
+def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a factor is at its bound: no value that it could have tells what is there.
+
+    A play that rattles is told as a coupling fifty times too soft, and bodies as light as nothing.
+
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
+    return any(
+        p.low > 0.0 and not p.low * SPENT < values[p.name] < p.high / SPENT
+        for p in candidate.parameters
+        if p.neutral == 1.0 and not p.is_shape
+    )
 
 
 def biased(

@@ -8,6 +8,7 @@ import pytest
 
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
@@ -132,6 +133,18 @@ def test_what_any_effect_does_as_well_is_not_named(found_of):
     assert vague.weighed[0].chance <= IDLE < sure.weighed[0].chance
     assert 0 not in vague.named
     assert 1 in vague.named
+
+
+def test_a_factor_at_its_bound_is_no_cause(found_of):
+    """Fifty times too soft or light imitates what no factor tells; it is used for prediction."""
+    ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
+    chances = []
+    for gain in (1.1, 0.021, 0.025):
+        model = found.final.model.without(1).joined(GAIN, {'gain': gain})
+        ended = replace(found, states=[found.start, replace(found.final, model=model)])
+        chances.append(belief(ready, ended).weighed[1].chance)
+    assert chances[0] > IDLE >= max(chances[1:])
+    assert not spent(COULOMB, {'torque': 1e5})
 
 
 def test_what_many_do_nearly_as_well_beside_a_strong_law_is_named(found_of, monkeypatch):
