@@ -29,10 +29,13 @@ from tendon_ros.report.diagnosis_figures import (
 )
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
+    CLEARLY,
     headline,
     in_floors,
     LABELS,
+    LIKELY,
     overall,
+    rest_words,
     sizes,
     together,
     UNIT,
@@ -59,8 +62,6 @@ _TONES: Mapping[str, Tone] = {
     'partly_explained': 'fair',
     'unexplained': 'bad',
 }
-_LIKELY = 0.5  # below that, where something unknown might lie says nothing
-_CLEARLY = 1.3  # noise deviations above which a channel is said to be off
 
 
 def diagnosis_page(diagnosis: Diagnosis, evidence: Evidence) -> str:
@@ -228,11 +229,11 @@ def _rest(diagnosis: Diagnosis) -> Section:
         f'With a probability of {percent(rest.probability)} something is at work that the '
         'catalogue does not have.'
     )
-    if rest.where and rest.probability >= _LIKELY:
+    if rest.where and rest.probability >= LIKELY:
         text += f' What remains lies {likely_at(rest.where)}'
         text += f' ({rest.regime}).' if rest.regime else '.'
     blocks: list[Block] = [Prose(text)]
-    above = [g for g in diagnosis.gap if in_floors(g)[1] > _CLEARLY]
+    above = [g for g in diagnosis.gap if in_floors(g)[1] > CLEARLY]
     if above:
         lines = tuple(
             f'{channel_words(g.channel)}: {number(in_floors(g)[1])} noise deviations remain'
@@ -243,9 +244,11 @@ def _rest(diagnosis: Diagnosis) -> Section:
         blocks.append(
             Prose(
                 'No channel is clearly above its noise floor any more: all remain below '
-                f'{number(_CLEARLY)} noise deviations.'
+                f'{number(CLEARLY)} noise deviations.'
             )
         )
+    if why := rest_words(diagnosis):
+        blocks.append(Prose(why))
     return Section('What is left', tuple(blocks), 'left')
 
 

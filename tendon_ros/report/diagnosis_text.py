@@ -13,6 +13,8 @@ from tendon_ros.report.diagnosis_verdict import (
     by_place,
     headline,
     in_floors,
+    LIKELY,
+    rest_words,
     sizes,
     together,
     worth,
@@ -136,10 +138,12 @@ def _ratio(value: float) -> str:
 
 def _rest(diagnosis: Diagnosis) -> list[str]:
     rest = diagnosis.unexplained
-    likely = rest.probability >= 0.5
+    likely = rest.probability >= LIKELY
     at = f', {likely_at(rest.where)}' if rest.where and likely else ''
     during = f' ({rest.regime})' if rest.regime and likely else ''
-    return [f'{percent(rest.probability)} that something not named is behind it{at}{during}']
+    said = [f'{percent(rest.probability)} that something not named is behind it{at}{during}']
+    why = rest_words(diagnosis)
+    return [*said, why] if why else said
 
 
 def _next(do: str, add_channel: str) -> str:

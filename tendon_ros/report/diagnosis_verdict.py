@@ -36,6 +36,10 @@ UNIT = (
     'data that no fit has seen.'
 )
 
+#: noise deviations above which a channel is said to be off; and the probability from which on what
+#: stays is said to have a cause that was not named
+CLEARLY, LIKELY = 1.3, 0.5
+
 _MUCH = 1.5  # noise deviations that a reader would call a gap
 _NAMED = 3  # more effects than that make a sentence unreadable
 
@@ -139,6 +143,25 @@ def headline(diagnosis: Diagnosis) -> str:
         f'{named[:1].upper()}{named[1:]} {does} part of the gap: {_shrinks(diagnosis)} from '
         f'{before} to {after} noise deviations. The rest{at} is of no known cause.'
     )
+
+
+def rest_words(diagnosis: Diagnosis) -> str:
+    """
+    Return why much may stay without another cause, or next to nothing with one.
+
+    :param diagnosis: the answer.
+    :return: a sentence; empty where size and probability of what stays say the same.
+    """
+    above = any(in_floors(g)[1] > CLEARLY for g in diagnosis.gap)
+    likely = diagnosis.unexplained.probability >= LIKELY
+    if above and not likely and diagnosis.causes:
+        return (
+            'What remains is no more than the laws of the named causes may be wrong by, and no '
+            'sign of another one.'
+        )
+    if likely and diagnosis.gap and not above:
+        return 'What remains is hardly more than noise, but has a form that noise has not.'
+    return ''
 
 
 def _shrinks(diagnosis: Diagnosis) -> str:

@@ -6,7 +6,7 @@ import pytest
 
 from tendon_ros.diagnose.result import FittedParameter
 from tendon_ros.report.diagnosis_text import summary
-from tendon_ros.report.diagnosis_verdict import headline, overall, worth
+from tendon_ros.report.diagnosis_verdict import headline, overall, rest_words, worth
 
 SENTENCES = {
     'no_gap': (
@@ -125,6 +125,26 @@ def test_summary_tells_what_is_left_and_what_is_next(case):
     assert 'record\n          pulley/pulley_1/position' in said
     assert 'left out: free: 0.4 s' in said
     assert 'something not named' not in summary(case('no_gap')[0])
+
+
+def test_the_rest_and_its_probability_do_not_contradict_one_another(case):
+    diagnosis, _ = case('three_causes')
+    for after, probability, said in (
+        (3.0, 0.01, 'no more than the laws of the named causes may be wrong by'),
+        (1.05, 0.99, 'hardly more than noise, but has a form that noise has not'),
+        (3.0, 0.99, ''),
+        (1.05, 0.01, ''),
+    ):
+        gap = tuple(g.model_copy(update={'after': after * g.noise_floor}) for g in diagnosis.gap)
+        rest = diagnosis.unexplained.model_copy(update={'probability': probability})
+        told = diagnosis.model_copy(update={'gap': gap, 'unexplained': rest})
+        assert said in rest_words(told)
+        assert bool(said) == bool(rest_words(told))
+        assert said in ' '.join(summary(told).split())
+    # where nothing is named there are no laws that may be wrong
+    far = tuple(g.model_copy(update={'after': 3.0 * g.noise_floor}) for g in diagnosis.gap)
+    assert rest_words(told.model_copy(update={'gap': far})) != ''
+    assert rest_words(told.model_copy(update={'gap': far, 'causes': ()})) == ''
 
 
 def test_guesses_are_told_with_what_became_of_them(case):
