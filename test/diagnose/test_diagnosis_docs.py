@@ -6,7 +6,7 @@ from typing import get_args
 import pytest
 
 from tendon_ros.cli.verb_diagnose import WHAT_IS_HERE
-from tendon_ros.diagnose import prepare, search, session
+from tendon_ros.diagnose import prepare, rounds, search, session
 from tendon_ros.diagnose.result import Verdict
 from tendon_ros.identify import binning, segment, tolerance
 
@@ -35,9 +35,9 @@ def test_counts_in_words():
     assert f'{names[int(tolerance.REACH)]} deviations at most' in TEXT
     assert f's in {names[prepare.KEPT]} is never fitted' in TEXT
     assert f'from {names[prepare.WHOLE]} recordings on' in TEXT
-    assert f'{names[search.MOST]} causes at most' in TEXT
+    assert f'{names[rounds.MOST]} causes at most' in TEXT
     assert f'{names[search.ROUNDS].capitalize()} rounds at most' in TEXT
-    assert f'from the {places[search.MANY + 1]} on' in TEXT
+    assert f'from the {places[rounds.MANY + 1]} on' in TEXT
 
 
 def test_verdicts_and_files():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose import search
+from tendon_ros.diagnose import first, search
 from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL, without_idle
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.prepare import prepared
@@ -68,7 +68,7 @@ def test_guesses_that_explain_all_but_noise_ask_for_no_many(measured_on, monkeyp
     axis = load_instrument('driven_axis')
     pulleys = tuple(replace(p, inertia=0.5 * p.inertia) for p in axis.pulleys)
     asked = []
-    monkeypatch.setattr(search, 'thinned_out', lambda *_: asked.append(1))
+    monkeypatch.setattr(first, 'thinned_out', lambda *_: asked.append(1))
 
     def searched(*effects):
         settings = (('duration', '6 s'), ('amplitude', '40 deg'))
