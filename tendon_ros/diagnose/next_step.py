@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 
 from tendon_ros.base.errors import TendonError
+from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import equals
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.result import NextExperiment
+from tendon_ros.diagnose.steps import Report
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.excitation import separating, Suggestion, together
 from tendon_ros.identify.fit import Problem
@@ -17,11 +20,13 @@ from tendon_ros.model.instrument import Instrument
 
 #: a cause with its parameters
 type Sized = tuple[Candidate, Mapping[str, float]]
-#: which causes of the last state are in question, and the pairs that an experiment separates
-type Question = tuple[Set[int], list[tuple[Sized, Sized]]]
+#: how probable a cause is, which of the last state are in question with it, and the pairs that an
+#: experiment separates
+type Question = tuple[float, Set[int], list[tuple[Sized, Sized]]]
 
 PAIRS = 2  # rivals of one cause that an experiment is sought for
 SHOWN = 2  # experiments for one cause
+PLANS = 0.95  # part of a diagnosis that is done before experiments are sought
 LONGEST = 600.0  # [s] beyond which an experiment is not worth proposing
 
 
@@ -30,23 +35,36 @@ def next_experiments(
     measured: Sequence[str],
     problem: Problem,
     found: Found,
-    companies: Sequence[Sequence[int]],
+    held: Belief,
     jobs: int,
+    patience: Patience,
+    report: Report,
 ) -> tuple[NextExperiment, ...]:
     """
     Return what to measure next, the most telling first.
+
+    The most probable cause is asked about first; there may not be time for all.
 
     :param instrument: the network.
     :param measured: channels that were measured.
     :param problem: the fitted bins.
     :param found: what the search has found.
-    :param companies: causes that make up for one another, by their place in the last state.
+    :param held: what is believed of it.
     :param jobs: threads.
+    :param patience: once all of its time is up, no more is asked.
+    :param report: called with what is being done and the part that is done.
     :return: experiments; none where nothing is left to separate.
     """
     chosen: list[tuple[Suggestion, NextExperiment]] = []
     model = found.final.model
-    for open_ones, pairs in (*_rivals(problem, found), *_members(found, companies)):
+    questions = [*_rivals(problem, found, held), *_members(found, held)]
+    for _, open_ones, pairs in sorted(questions, key=lambda question: -question[0]):
+        if patience.ended:
+            break
+        first = pairs[0][0][0]
+        report(
+            f'looking for what would separate {first.effect} at {first.place} from others', PLANS
+        )
         others = [model.use(n) for n in range(len(model.causes)) if n not in open_ones]
         settled = replace(instrument, effects=in_force(instrument.effects, others))
         try:
@@ -68,26 +86,29 @@ def next_experiments(
     return tuple(dict.fromkeys(one for _, one in chosen))
 
 
-def _rivals(problem: Problem, found: Found) -> list[Question]:
+def _rivals(problem: Problem, found: Found, held: Belief) -> list[Question]:
     """Return each cause with the rivals that do as well in its place."""
     model = found.final.model
     questions: list[Question] = []
     for k, cause in enumerate(model.causes):
         rivals = equals(problem, found, k)[:PAIRS]
         if rivals:
-            own = cause, model.values(k)
-            questions.append(({k}, [(own, (r.candidate, r.fit.model.values(-1))) for r in rivals]))
+            own: Sized = cause, model.values(k)
+            pairs: list[tuple[Sized, Sized]] = [
+                (own, (r.candidate, r.fit.model.values(-1))) for r in rivals
+            ]
+            questions.append((held.weighed[k].chance, {k}, pairs))
     return questions
 
 
-def _members(found: Found, companies: Sequence[Sequence[int]]) -> list[Question]:
+def _members(found: Found, held: Belief) -> list[Question]:
     """Return the first cause of each company with others, each fitted without the other."""
     causes = found.final.model.causes
     questions: list[Question] = []
-    for first, *others in companies:
+    for first, *others in held.companies:
         for other in others[:PAIRS]:
             alone = found.without[other].model.values(first - (other < first))
             instead = found.without[first].model.values(other - (first < other))
             pair = (causes[first], alone), (causes[other], instead)
-            questions.append(({first, other}, [pair]))
+            questions.append((held.named[first].chance, {first, other}, [pair]))
     return questions

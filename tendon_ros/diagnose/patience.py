@@ -24,8 +24,9 @@ class Patience:
 
     def __init__(self, seconds: float = math.inf) -> None:
         self._seconds = seconds
-        self._until = time.monotonic() + SEARCHES * seconds
-        self._cut = False
+        began = time.monotonic()
+        self._until, self._end = began + SEARCHES * seconds, began + seconds
+        self._cut = self._unasked = False
 
     @property
     def over(self) -> bool:
@@ -33,18 +34,28 @@ class Patience:
         self._cut |= time.monotonic() > self._until
         return self._cut
 
+    @property
+    def ended(self) -> bool:
+        """Whether all of the time is up: what has an answer keeps it, what has none stays open."""
+        self._unasked |= time.monotonic() > self._end
+        return self._unasked
+
     def words(self, unmet: Sequence[Candidate]) -> list[str]:
         """
         Return what was left out since it had run out.
 
         :param unmet: causes that nobody was tried in the place of.
-        :return: a sentence; none where nothing was left out.
+        :return: sentences; none where nothing was left out.
         """
-        if not self._cut:
-            return []
         minutes = self._seconds / 60.0
+        unasked = [
+            'what would separate the less probable of these causes from others was not looked '
+            f'for, so as to take no more than {minutes:.3g} min'
+        ] * self._unasked
+        if not self._cut:
+            return unasked
         told = f'the search for causes was cut short, so as to take no more than {minutes:.3g} min'
         if unmet:
             names = ', '.join(f'{c.effect} at {c.place}' for c in unmet)
             told += f', before others were tried in the place of {names}: not named for that'
-        return [f'{told}. A longer limit (--minutes) lets it come to its end.']
+        return [f'{told}. A longer limit (--minutes) lets it come to its end.', *unasked]

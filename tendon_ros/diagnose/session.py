@@ -100,7 +100,6 @@ def diagnose(
     )
     patience = Patience(seconds)
     ready, found = _searched(ready, candidates, jobs, report, memory, patience)
-    cut = patience.words(found.unmet)
     problem = ready.problem
     report('judging', 0.85)
     held = belief(ready, found)
@@ -127,11 +126,10 @@ def diagnose(
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
     loops = closed_loop_gap(intake.recordings, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
-    report('looking for what would separate the rest', 0.95)
     ahead: tuple[NextExperiment, ...] = ()
     if plan:
         names = sorted(measured)
-        ahead = next_experiments(instrument, names, problem, found, held.companies, jobs)
+        ahead = next_experiments(instrument, names, problem, found, held, jobs, patience, report)
     moved = gather.moved(heard.problem, final)
     diagnosis = Diagnosis(
         verdict=verdict,
@@ -155,7 +153,7 @@ def diagnose(
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *gather.absurd_words(moved),
-            *cut,
+            *patience.words(found.unmet),
         ),
     )
     evidence = Evidence(

@@ -32,8 +32,13 @@ def test_it_runs_out_once_and_for_all(monkeypatch):
     assert 'coulomb_friction at pulley_3' in told
     assert '--minutes' in told
     assert 'coulomb_friction' not in patience.words([])[0]
+    assert not patience.ended
+    now[0] += 18.0
+    assert patience.ended
+    assert 'what would separate' in patience.words([])[1]
     now[0] = 0.0
     assert patience.over
+    assert patience.ended
 
 
 def test_without_a_limit_it_never_does():
