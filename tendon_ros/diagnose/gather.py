@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+import math
 
 import numpy as np
 
+from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import noise_of, unit_of
 from tendon_ros.diagnose.intervals import number_intervals
+from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
@@ -94,15 +97,37 @@ def floors(problem: Problem) -> tuple[Floor, ...]:
     )
 
 
-def moved(problem: Problem, final: Fit) -> tuple[Moved, ...]:
+def alternatives(problem: Problem, found: Found, held: Belief) -> list[Fit]:
+    """
+    Return fits of what may be instead of what was found.
+
+    Guesses go to another valley with a rival that does as well, and back with a cause that is not
+    there.
+
+    :param problem: the bins.
+    :param found: what the search has found.
+    :param held: what is believed of it.
+    :return: the fits with rivals that cannot be told from causes, and without those that are not
+        believed.
+    """
+    fits = []
+    for k in range(len(held.weighed)):
+        fits += [rival.fit for rival in equals(problem, found, k)]
+        if k not in held.accepted and math.isfinite(found.without[k].cost):
+            fits.append(found.without[k])
+    return fits
+
+
+def moved(problem: Problem, final: Fit, others: Sequence[Fit]) -> tuple[Moved, ...]:
     """
     Return the numbers of the file as they were fitted within their tolerances.
 
     :param problem: the bins.
     :param final: the fit of what was found.
+    :param others: fits of what may be instead.
     :return: the numbers with their intervals.
     """
-    intervals = number_intervals(problem, final)
+    intervals = number_intervals(problem, final, others)
     owned = problem.owned(final.model)
     return tuple(
         Moved(t.place, t.quantity, t.axis.value(z), interval, t.axis.unit, t.guessed)

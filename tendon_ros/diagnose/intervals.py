@@ -117,21 +117,32 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     return found
 
 
-def number_intervals(problem: Problem, fit: Fit) -> list[tuple[float, float]]:
+def number_intervals(
+    problem: Problem, fit: Fit, others: Sequence[Fit] = ()
+) -> list[tuple[float, float]]:
     """
     Return the 95 % intervals of the numbers of the file that may move.
 
     :param problem: the data.
     :param fit: the fit.
+    :param others: fits of other explanations that may hold as well; what a guess is in them lies
+        within, too.
     :return: low and high of each tolerance, in the unit of its axis.
     """
     own = fit.slope.shape[1] - len(problem.tolerances)
     known = deviations(problem, fit)[own:]
-    return [
+    found = []
+    for n, (t, z, s) in enumerate(
+        zip(problem.tolerances, fit.model.moved, known.tolist(), strict=True)
+    ):
+        if not t.guessed:
+            found.append(_on_axis(t.axis, z, s, 0.0))
+            continue
         # what laws get wrong pulls at a guess as it does at a size
-        _on_axis(t.axis, z, float(s), SIZE_FORM * abs(t.axis.value(z)) if t.guessed else 0.0)
-        for t, z, s in zip(problem.tolerances, fit.model.moved, known, strict=True)
-    ]
+        ends = _on_axis(t.axis, z, s, SIZE_FORM * abs(t.axis.value(z)))
+        values = [t.axis.value(float(other.model.moved[n])) for other in others]
+        found.append((min(ends[0], *values), max(ends[1], *values)) if values else ends)
+    return found
 
 
 def _on_axis(axis: Axis, z: float, deviation: float, by_form: float) -> tuple[float, float]:

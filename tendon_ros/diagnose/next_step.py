@@ -24,6 +24,7 @@ type Sized = tuple[Candidate, Mapping[str, float]]
 #: experiment separates
 type Question = tuple[float, Set[int], list[tuple[Sized, Sized]]]
 
+ASKED = 4  # causes in question, the most probable ones: those of a machine may be ten
 PAIRS = 2  # rivals of one cause that an experiment is sought for
 SHOWN = 2  # experiments for one cause
 PLANS = 0.95  # part of a diagnosis that is done before experiments are sought
@@ -43,7 +44,7 @@ def next_experiments(
     """
     Return what to measure next, the most telling first.
 
-    The most probable cause is asked about first; there may not be time for all.
+    The most probable causes are asked about, while there is time.
 
     :param instrument: the network.
     :param measured: channels that were measured.
@@ -58,7 +59,7 @@ def next_experiments(
     chosen: list[tuple[Suggestion, NextExperiment]] = []
     model = found.final.model
     questions = [*_rivals(problem, found, held), *_members(found, held)]
-    for _, open_ones, pairs in sorted(questions, key=lambda question: -question[0]):
+    for _, open_ones, pairs in sorted(questions, key=lambda question: -question[0])[:ASKED]:
         if patience.ended:
             break
         first = pairs[0][0][0]

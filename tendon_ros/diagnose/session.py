@@ -130,7 +130,7 @@ def diagnose(
     if plan:
         names = sorted(measured)
         ahead = next_experiments(instrument, names, problem, found, held, jobs, patience, report)
-    moved = gather.moved(heard.problem, final)
+    moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.gather import alternatives
 from tendon_ros.diagnose.guesses import astray, better, under_way
+from tendon_ros.diagnose.intervals import number_intervals
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
@@ -87,3 +90,30 @@ def test_a_last_state_is_fitted_to_its_end(problem):
     assert found.final.cost < 0.99 * rough.cost
     assert found.final.cost < 1.01 * end.cost
     assert found.without[0].cost >= found.final.cost
+
+
+def test_a_guess_is_as_uncertain_as_explanations_differ(problem):
+    rubbing = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
+    free = problem.fitted(problem.empty)
+    alone = number_intervals(problem, rubbing)
+    both = number_intervals(problem, rubbing, [free])
+    wider = [a != b for a, b in zip(alone, both, strict=True)]
+    guessed = [t.guessed for t in problem.tolerances]
+    assert any(wider)
+    for n, (t, (low, high)) in enumerate(zip(problem.tolerances, both, strict=True)):
+        assert guessed[n] or not wider[n]
+        assert low <= t.axis.value(rubbing.model.moved[n]) <= high
+        if guessed[n]:
+            assert low <= t.axis.value(free.model.moved[n]) <= high
+
+
+def test_what_may_be_instead_is_an_equal_rival_or_that_a_doubted_cause_is_not_there(problem):
+    final = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
+    start = problem.fitted(problem.empty)
+    values = {'static': 0.05, 'sliding': 0.05, 'speed': 0.1}
+    rival = Rival(STRIBECK, problem.fitted(problem.empty.joined(STRIBECK, values)))
+    worse = Rival(Candidate('gravity', 'pulley_axis'), start)
+    found = Found(states=[start, final], rivals=[[rival, worse]], without=[start])
+    doubted = Belief((None,), {}, (), (), (), None)
+    assert alternatives(problem, found, doubted) == [rival.fit, start]
+    assert alternatives(problem, found, replace(doubted, accepted=(0,))) == [rival.fit]
