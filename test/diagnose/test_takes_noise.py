@@ -26,6 +26,9 @@ from tendon_ros.model.instrument_file import load_instrument
         ('encoder_body', 3.0, 0.0, 0.3, False),
         # it has nothing to do with how counts become torques
         ('pulley_body', 0.9, 0.0, 1.0, False),
+        # noise was taken for more than it is
+        ('pulley_body', 0.4, 0.0, 1.0, True),
+        ('pulley_body', 0.4, 0.2, 1.0, False),
     ],
 )
 def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
@@ -35,13 +38,16 @@ def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
     rollouts = SimpleNamespace(instrument=load_instrument('single_body'))
 
     def fit(power):
-        return SimpleNamespace(left=np.ones(100), cost=100.0 * power, model=model)
+        left = np.full(100, np.sqrt(power))
+        return SimpleNamespace(left=left, cost=100.0 * power, model=model)
 
-    without, final = fit(before), fit(before - 0.5)
+    without, final = fit(before), fit(before - 0.3)
     monkeypatch.setattr(judge, 'its_own', lambda *_: apart)
     monkeypatch.setattr(judge, 'gains', lambda *_: (0.5, 0.5))
     problem = SimpleNamespace(
-        structured=lambda left: shared if left is without.left else 0.0, rollouts=rollouts
+        structured=lambda left: shared if left is without.left else 0.0,
+        rollouts=rollouts,
+        channels=lambda: {'torque': np.ones(100, dtype=bool)},
     )
     found = SimpleNamespace(without=[without], final=final)
     assert takes_noise(problem, found, 0) == noise
