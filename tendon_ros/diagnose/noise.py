@@ -59,7 +59,7 @@ class Noise:
         for segment, rows, by_counts, apart, resting in zip(
             segments, left, self.counts, unrepeated(segments, left), self.resting, strict=True
         ):
-            near = neighbours(segment.period, counted=bool(segment.prescribed))
+            near = neighbours(segment.spacing, counted=bool(segment.prescribed))
             noise, shaped = [], []
             for n, (m, row, c, a) in enumerate(
                 zip(segment.measured, rows, by_counts, apart, strict=True)
@@ -120,9 +120,10 @@ def heard(measured: Measured, left: FloatArray, apart: int) -> float:
     :param apart: how many bins apart noise is a difference and motion is not.
     :return: one deviation, in its unit.
     """
+    # where samples are seldom, some bins have none
+    left = left[np.isfinite(left)]
     # second differences: what a wrong model leaves of a motion is nearly straight for so long
     bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
-    bend = bend[np.isfinite(bend)]
     found = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if bend.size else 0.0
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
     span = float(np.nanmax(np.abs(measured.value), initial=0.0))

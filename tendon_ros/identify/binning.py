@@ -13,7 +13,14 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
-from tendon_ros.identify.segment import FITTED, motion_of, reading_error, SETTLING
+from tendon_ros.identify.segment import (
+    by_seldom_torque,
+    FITTED,
+    motion_of,
+    reading_error,
+    SETTLING,
+    USUAL_BIN,
+)
 from tendon_ros.identify.smoothing import recounted
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
@@ -24,10 +31,10 @@ BoolArray = NDArray[np.bool_]
 #: bins of what is fitted together: minutes of data are seen more coarsely; at most, where
 #: acceleration needs them
 ENOUGH, BINS = 8_000, 25_000
-USUAL_BIN = 0.008  # [s], a tenth of the time in which a cable-driven instrument answers
 #: part of a motor's torque that bins may get wrong of what its inertia makes before others are
 #: looked for: more would show as a wrong inertia
 WRONG = 0.02
+JUMPS = 0.004  # [s] within which a torque jumps where nothing else drives the model
 FEW = 10  # bins of a recording that say nothing of their length
 #: part of an acceleration's power that may be there where counts seem to make up all of it
 SOME = 0.25
@@ -50,6 +57,10 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     lengths = [r.end - r.start for r in recordings]
     total = min(sum(lengths), max(FITTED, *lengths))
     sampling = max(r[driving[0].sensor.channel].sampling for r in recordings)
+    if all(by_seldom_torque(r, driving) for r in recordings):
+        # readings belong to their instants, and torques jump between them
+        finer = min(round(sampling / JUMPS), int(BINS * sampling / total))
+        return sampling / max(1, finer)
     wished = max(USUAL_BIN, total / ENOUGH, sampling)
     samples = usual = round(wished / sampling)
     found = [Driven.of(r, instrument, d) for r in recordings for d in driving]

@@ -245,7 +245,7 @@ class Residuals:
         found: dict[str, tuple[float, int]] = {}
         for n, c, own in self.groups(left):
             segment = self._segments[n]
-            apart = neighbours(segment.period, counted=bool(segment.prescribed))
+            apart = neighbours(segment.spacing, counted=bool(segment.prescribed))
             if len(own) <= apart:
                 continue
             step = own[apart:] - own[:-apart]
@@ -272,7 +272,7 @@ def neighbours(period: float, *, counted: bool) -> int:
     """
     Return how far bins are apart between which noise is a difference and motion is not.
 
-    :param period: length of a bin [s].
+    :param period: time between values [s].
     :param counted: whether the motion was counted, so that acceleration is partly made up.
     :return: in bins.
     """

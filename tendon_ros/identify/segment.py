@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.identify.driving import drives
+from tendon_ros.identify.driving import Drive, drives
 from tendon_ros.identify.loads import loads
 from tendon_ros.identify.means import binned
 from tendon_ros.identify.smoothing import at_rest, smoothed
@@ -25,6 +25,8 @@ from tendon_ros.model.signals import Signals
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+#: [s] of a bin, a tenth of the time in which a cable-driven instrument answers
+USUAL_BIN = 0.008
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
 STEPS = 0.5  # part of its samples that are as the one before, of a torque that moves by steps
@@ -96,6 +98,11 @@ class Segment:
     still: tuple[BoolArray, ...] = ()
     sampling: float = 0.0
 
+    @property
+    def spacing(self) -> float:
+        """Time between values [s]: where torques come seldom, some bins have none."""
+        return self.period if self.prescribed else max(self.period, self.sampling)
+
     def at_rest(self, instrument: Instrument) -> Iterator[tuple[int, int, BoolArray]]:
         """
         Yield the torques of motors whose motion drives the model, and where each of them rests.
@@ -140,6 +147,8 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     known = [d.sensor.channel for d in driving]
     start = max(float(recording[name].time[0]) for name in known)
     end = min(float(recording[name].time[-1]) for name in known)
+    if by_seldom_torque(recording, driving):
+        start -= 0.5 * period  # each reading in the middle of a bin
     bins = int((end - start) / period)
     time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
     rows = [
@@ -148,6 +157,8 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         else _motion(recording[d.sensor.channel], d.sensor, start, period, bins)
         for d in driving
     ]
+    # torques alone may jump, and must not ring
+    driven = Signals.through if all(d.by_torque for d in driving) else Signals.smooth
     measured = []
     for sensor in instrument.sensors:
         if sensor.channel in known or sensor.channel not in recording:
@@ -159,7 +170,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         period=period,
         time=time,
         prescribed=tuple(d.pulley for d in driving if not d.by_torque),
-        motion=Signals.smooth(0.5 * period, period, np.array(rows)),
+        motion=driven(0.5 * period, period, np.array(rows)),
         measured=tuple(measured),
         contacts=tuple(c.name for c in instrument.contacts if c.enabled),
         pose={},
@@ -176,17 +187,35 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     )
 
 
+def by_seldom_torque(recording: Recording, driving: Sequence[Drive]) -> bool:
+    """
+    Return whether nothing but torques drives the model, and they come less often than bins.
+
+    :param recording: what was measured.
+    :param driving: what drives the model.
+    :return: whether bins are better finer than samples, with a reading in the middle of some.
+    """
+    return all(d.by_torque and recording[d.sensor.channel].sampling > USUAL_BIN for d in driving)
+
+
 def _torque(channel: Channel, start: float, period: float, bins: int) -> FloatArray:
     """
-    Return a torque at the middles of the bins: it may jump, and is not smoothed.
+    Return the mean torque of each bin: it may jump, and is not smoothed.
 
-    What moves by steps is a command, such as a voltage, and holds until the next. Taken for a line
-    from sample to sample it would begin to rise half a sample before it does.
+    What moves by steps is a command, such as a voltage, and holds until the next, and so is what
+    comes more seldom than bins. Taken for a line from sample to sample it would begin to rise half
+    a sample before it does.
     """
-    middles = start + period * (np.arange(bins, dtype=np.float64) + 0.5)
-    if np.mean(np.diff(channel.value) == 0.0) > STEPS:
-        return channel.value[np.searchsorted(channel.time, middles, side='right') - 1]
-    return np.asarray(channel.at(middles), dtype=np.float64)
+    edges = start + period * np.arange(bins + 1, dtype=np.float64)
+    if channel.sampling > USUAL_BIN or np.mean(np.diff(channel.value) == 0.0) > STEPS:
+        # what has been given until then, without what came before the first reading
+        given = np.concatenate([[0.0], np.cumsum(channel.value[:-1] * np.diff(channel.time))])
+        until = np.interp(edges, channel.time, given)
+        first, last = channel.value[0], channel.value[-1]
+        until += first * np.minimum(0.0, edges - channel.time[0])
+        until += last * np.maximum(0.0, edges - channel.time[-1])
+        return np.asarray(np.diff(until) / period, dtype=np.float64)
+    return np.asarray(channel.at(edges[:-1] + 0.5 * period), dtype=np.float64)
 
 
 def thinned(channel: Channel) -> Channel:
