@@ -44,7 +44,11 @@ def patched(
         for p in instrument.pulleys
     )
     couplings = tuple(
-        replace(c, stiffness=c.stiffness * moved.get((f'coupling_{c.name}', 'stiffness'), 1.0))
+        replace(
+            c,
+            stiffness=c.stiffness * moved.get((f'coupling_{c.name}', 'stiffness'), 1.0),
+            damping=max(0.0, c.damping + moved.get((f'coupling_{c.name}', 'damping'), 0.0)),
+        )
         for c in instrument.couplings
     )
     curves = {c.name: c for c in instrument.curves}
@@ -60,7 +64,8 @@ def patched(
             curves[own] = Curve(own, old.elongation, tuple(scale * t for t in old.tension))
         tight = loop.pretension * moved.get((place, 'pretension'), 1.0)
         curves[own] = _reaching(curves[own], tight)
-        loops.append(replace(loop, curve=own, pretension=tight))
+        damping = max(0.0, loop.damping + moved.get((place, 'damping'), 0.0))
+        loops.append(replace(loop, curve=own, pretension=tight, damping=damping))
     contacts = tuple(
         replace(
             c,

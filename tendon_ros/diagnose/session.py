@@ -25,6 +25,7 @@ from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
+from tendon_ros.diagnose.intake.stamps import as_sampled
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -92,12 +93,11 @@ def diagnose(
     given = instrument
     instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
-    instrument, counted = as_counted(intake.recordings, instrument)
-    ready = prepared(intake.recordings, instrument, jobs)
-    measured = {name for r in intake.recordings for name in r.channels}
-    candidates = everyone(
-        instrument, sorted(measured), withhold, magnitude_of(intake.recordings, instrument)
-    )
+    runs, evened = as_sampled(intake.recordings, instrument)
+    instrument, counted = as_counted(runs, instrument)
+    ready = prepared(runs, instrument, jobs)
+    measured = {name for r in runs for name in r.channels}
+    candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds)
     ready, found = _searched(ready, candidates, jobs, report, memory, patience)
     problem = ready.problem
@@ -124,7 +124,7 @@ def diagnose(
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
-    loops = closed_loop_gap(intake.recordings, instrument, each, segments)
+    loops = closed_loop_gap(runs, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
     ahead: tuple[NextExperiment, ...] = ()
     if plan:
@@ -147,8 +147,9 @@ def diagnose(
         next_experiment=ahead,
         left_out=(
             *intake.left_out,
+            *evened,
             *counted,
-            *strong_words(intake.recordings, instrument),
+            *strong_words(runs, instrument),
             *said_of_torque(instrument),
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
@@ -158,7 +159,7 @@ def diagnose(
     )
     evidence = Evidence(
         instrument=instrument.name,
-        recordings=tuple(r.name for r in intake.recordings),
+        recordings=tuple(r.name for r in runs),
         traces=gather.traces(heard, final.model),
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),

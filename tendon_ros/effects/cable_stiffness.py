@@ -11,8 +11,8 @@ Equation::
 for both cables of the loop, x_s and x_e where the file's curve starts and ends. The pretension, a
 force, is not scaled with it: see the effect ``pretension``.
 
-A hardening other than one is no cause by itself: it is found where the file calls the shape of the
-curve a guess.
+A hardening other than one, or another damping, is no cause by itself: they are found where the
+file calls the shape of the curve, or the damping, a guess.
 
 Source: Hooke's law of a cable of another section or length; ropes stiffen while their strands
 settle, which a power of the elongation follows.
@@ -24,10 +24,12 @@ from tendon_ros.base.effect import Effect, Numbers
 from tendon_ros.base.parameter import Parameter
 
 
-def modify(numbers: Numbers, index: int, scale: float, hardening: float) -> None:
-    """Scale and bend the tension curve of a loop."""
+def modify(numbers: Numbers, index: int, scale: float, hardening: float, damping: float) -> None:
+    """Scale and bend the tension curve of a loop, and add to its damping."""
     numbers['scale'][index] *= scale
     numbers['hardening'][index] *= hardening
+    damped = numbers['loop_damping']
+    damped[index] = max(0.0, damped[index] + damping)
 
 
 EFFECT = Effect(
@@ -52,6 +54,16 @@ EFFECT = Effect(
             low=0.7,
             high=4.0,
             typical=1.5,
+            search='guess',
+        ),
+        Parameter(
+            name='damping',
+            unit='N s/m',
+            meaning='added to the damping of the file; of a coupling in N m s/rad',
+            neutral=0.0,
+            low=-1e5,
+            high=1e5,
+            typical=1.0,
             search='guess',
         ),
     ),

@@ -24,6 +24,9 @@ DAMPING = 0.06  # dampings are never known as well
 REACH = 3.0  # deviations; what lies beyond is a cause
 #: damping that a guess of zero may become, one deviation [N m s/rad]
 SOME_DAMPING = 0.01
+#: [s] by which the damping of a cable or a coupling delays its force, if a guess of zero is one
+#: deviation off
+YIELDING = 1e-3
 
 
 @dataclass(frozen=True)
@@ -110,6 +113,10 @@ def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, 
         unit, least = 'N m s/rad', -pulley.damping  # less would drive
         axis = _addition('damping', unit, pulley.damping, spread, SOME_DAMPING, least)
         movable('viscous_friction', place, 'damping', axis)
+    for place, unit, nominal, stiffness in _damped(instrument):
+        spread = stated.get(f'{place}.damping', 0.0)
+        axis = _addition('damping', unit, nominal, spread, YIELDING * stiffness, -nominal)
+        movable('cable_stiffness', place, 'damping', axis)
     for contact in instrument.contacts:
         place = contact_place(instrument, contact)
         spread = stated.get(f'{place}.position', 0.0)
@@ -133,6 +140,17 @@ def _factors(instrument: Instrument) -> Iterator[tuple[str, str, str, float]]:
         yield 'torque_gain', f'motor_{motor.name}', 'torque_gain', 0.0
     for contact in instrument.contacts:
         yield 'contact_stiffness', contact_place(instrument, contact), 'stiffness', MEASURED
+
+
+def _damped(instrument: Instrument) -> Iterator[tuple[str, str, float, float]]:
+    """Yield place, unit, damping and mean stiffness of all that stretches or twists."""
+    curves = {c.name: c for c in instrument.curves}
+    for loop in instrument.loops:
+        x, t = curves[loop.curve].elongation, curves[loop.curve].tension
+        yield f'cable_{loop.name}', 'N s/m', loop.damping, (t[-1] - t[0]) / (x[-1] - x[0])
+    for coupling in instrument.couplings:
+        place = f'coupling_{coupling.name}'
+        yield place, 'N m s/rad', coupling.damping, coupling.stiffness
 
 
 def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:

@@ -108,8 +108,8 @@ def test_only_the_place_is_changed(effect, kind):
             'cable_stiffness',
             'cable',
             0,
-            {'scale': 0.8, 'hardening': 2.0},
-            {('scale', 0): 0.8, ('hardening', 0): 2.0},
+            {'scale': 0.8, 'hardening': 2.0, 'damping': 3.0},
+            {('scale', 0): 0.8, ('hardening', 0): 2.0, ('loop_damping', 0): 3.0},
         ),
         ('backlash', 'coupling', 2, {'angle': 0.01, 'held': 0.0}, {('play', 2): 0.01002}),
         # motor 1 turns pulley 0, on which loop 0 (radius 0.03) and coupling 2 (ratio -35) act

@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, starts
+from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument_file import load_instrument
 
 #: effect, place, parameters, and the relative error that noise and smoothing may leave
@@ -148,6 +150,25 @@ def test_a_guessed_shape_of_the_curve_is_found(bench, measured_on):
     found = {(t.place, t.quantity): t.axis.value(z) for t, z in problem.moved(fit.model)}
     assert found['cable_L3', 'hardening'] == pytest.approx(1.4, abs=0.05)
     assert fit.cost / len(fit.left) < 1.3 < before
+
+
+def test_a_guessed_damping_of_a_cable_is_found_and_written(bench, measured_on):
+    """Of a loop and of a coupling; whoever says that it is known keeps it."""
+    loops = tuple(replace(x, damping=300.0) if x.name == 'L3' else x for x in bench.loops)
+    run = measured_on(replace(bench, loops=loops))
+    known = prepared([run], bench).problem
+    assert ('cable_L3', 'damping') not in {(t.place, t.quantity) for t in known.tolerances}
+    guessed = replace(bench, tolerances={'cable_L3.damping': math.inf})
+    problem = prepared([run], guessed).problem
+    fit = problem.fitted(problem.empty, rounds=20)
+    [own] = [x for x in patched(problem, fit.model, guessed).loops if x.name == 'L3']
+    assert own.damping == pytest.approx(300.0, rel=0.1)
+    free = known.fitted(known.empty, rounds=20)
+    assert fit.cost < 0.98 * free.cost
+    tool = load_instrument('davinci_grasper')
+    tool = replace(tool, tolerances={f'coupling_{tool.couplings[0].name}.damping': math.inf})
+    [twist] = [t for t in tolerances(tool) if t.quantity == 'damping' and t.guessed]
+    assert twist.axis.unit == 'N m s/rad'
 
 
 def test_a_fit_that_cannot_be_computed_where_it_begins_goes_back_towards_the_file(
