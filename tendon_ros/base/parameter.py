@@ -19,7 +19,8 @@ class Parameter:
     ``duration`` (of something that begins at an instant), ``cycles`` (of a turn), ``level``
     (of the motor's torque), ``share`` (all or nothing), ``switch`` (yes or no, which nothing
     fits); what it is to the size beside it: its ``phase``, the angle at which it comes to
-    ``rest``; ``shape``: a shape in spite of its neutral value; or ``guess``: fitted only where
+    ``rest``; ``slack`` (of a preload: also where it is so small that a cable loosens);
+    ``shape``: a shape in spite of its neutral value; or ``guess``: fitted only where
     an instrument file says that it is a guess.
     """
 
@@ -40,6 +41,7 @@ class Parameter:
         'switch',
         'phase',
         'rest',
+        'slack',
         'shape',
         'guess',
     ] = ''

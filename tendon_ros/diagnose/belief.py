@@ -81,7 +81,9 @@ def belief(ready: Prepared, found: Found) -> Belief:
     able = [
         k
         for k, cause in enumerate(causes)
-        if k not in undone and not spent(cause, found.final.model.values(k))
+        if k not in undone
+        and cause not in found.unmet
+        and not spent(cause, found.final.model.values(k))
     ]
     together = companies(ready, found, weighed, able, left)
     members = {k for company in together for k in company.members}

@@ -36,6 +36,7 @@ EFFECT = Effect(
             low=0.0,
             high=50.0,
             typical=0.7,
+            search='slack',
         ),
     ),
     modify=modify,

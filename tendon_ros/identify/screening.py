@@ -111,7 +111,9 @@ class Screen:
             sizes = coordinates.sizes
             start = Proposal(one, z, sizes, self._base(candidate))
             # the bins about an event hardly count, whatever its size: at a small one they are all
-            at = start.steps if one.instants else [1.0] * len(sizes)
+            # and a preload is asked about where it leaves a cable slack
+            sized = one.instants or any(p.search == 'slack' for p in one.parameters)
+            at = start.steps if sized else [1.0] * len(sizes)
             judged = self._judged(start, at, self._first(start, at))
             if judged is not None:
                 found[judged] = None

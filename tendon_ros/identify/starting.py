@@ -1,20 +1,24 @@
 """
 Where fits begin, found in what is left: times of events, periods of ripples, levels of limits.
 
-A coarse grid would miss them, and no derivative leads there.
+So are preloads that leave a cable slack. A coarse grid would miss them, and no derivative leads
+there.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.rollout import fineness, USUAL
+from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
 Start = tuple[Candidate, dict[str, float]]
@@ -23,6 +27,8 @@ EVENTS = 2  # starts of one event: in all recordings, or in one of them
 BEGUN = 0.1  # part of a recording before an event, and after: else it has always been there
 WAVES = 400.0  # of a ripple over a turn that are looked for, more where counts are finer
 LEVELS = 5  # tried for the limit of a motor's torque
+#: times the preload at which a cable would begin to loosen
+LOOSE = (1.2, 0.9, 0.65)
 LASTS = 0.3  # part of a recording from which on what lasts is no event
 
 
@@ -53,6 +59,8 @@ class Starting:
             grid = self._cycles(candidate, grid[0])
         if 'level' in kinds:
             grid = self._levels(candidate, grid[0])
+        if 'slack' in kinds:
+            grid += self._slack(candidate, grid[0])
         return [(candidate, values) for values in grid]
 
     def _instants(self, candidate: Candidate, values: dict[str, float]) -> list[Start]:
@@ -149,6 +157,32 @@ class Starting:
         largest = 0.98 * float(torques.max())
         least = min(max(float(np.quantile(torques, USUAL)), 0.1 * largest), 0.8 * largest)
         return [values | {name: float(v)} for v in np.geomspace(largest, least, LEVELS)]
+
+    def _slack(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
+        """Try preloads about the one at which the cable is slack where it is stretched least."""
+        instrument = self._problem.rollouts.instrument
+        _, k = place_index(instrument, candidate.place)
+        loop = instrument.loops[k]
+        [curve] = [c for c in instrument.curves if c.name == loop.curve]
+        [name] = [p.name for p in candidate.parameters if p.search == 'slack']
+        tension = np.interp(self._stretches[k], curve.elongation, curve.tension)
+        begins = float(tension) / max(loop.pretension, 1e-12)
+        if not begins < values[name]:
+            return []
+        return [values | {name: part * begins} for part in LOOSE]
+
+    @cached_property
+    def _stretches(self) -> FloatArray:
+        """How far the cables of each loop are let out at most [m], shape (loops,)."""
+        problem = self._problem
+        instrument = problem.rollouts.instrument
+        radius = instrument.routing()[: len(instrument.loops)]
+        try:
+            states = problem.rollouts.states(problem.uses(self._fit.model))
+        except SimulationError:
+            return np.full(len(radius), np.inf)
+        found = [np.abs(rows.angle @ radius.T).max(axis=0) for rows in states]
+        return np.asarray(np.max(found, axis=0), dtype=np.float64)
 
 
 def between_recordings(problem: Problem, candidate: Candidate) -> bool:

@@ -160,6 +160,11 @@ def rest_words(diagnosis: Diagnosis) -> str:
             'sign of another one.'
         )
     if likely and diagnosis.gap and not above:
+        if diagnosis.beside:
+            return (
+                'What remains with the effects beside is hardly more than noise: one of them may '
+                'be it, but it is not certain which.'
+            )
         return 'What remains is hardly more than noise, but has a form that noise has not.'
     return ''
 

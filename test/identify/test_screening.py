@@ -1,10 +1,14 @@
 """Screening: what was put in is proposed first, with about its size."""
 
+from dataclasses import replace
+
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.screening import Screen
+from tendon_ros.identify.starting import Starting
+from tendon_ros.model.instrument_file import load_instrument
 
 #: what was put in, and what else it may be mistaken for before anything is fitted
 INJECTED = [
@@ -64,3 +68,22 @@ def test_a_size_that_can_only_grow_is_not_made_smaller(bench, measured_on):
     )
     for p in Screen(problem, state).proposals(Candidate('tension_friction', 'pulley_3')):
         assert p.values['coefficient'] >= 0.0
+
+
+def test_a_preload_is_asked_about_where_it_leaves_a_cable_slack(measured_on):
+    """With straight cables and no friction it leaves no trace before: no size is typical."""
+    belt = load_instrument('two_motor_belt')
+    known = {k: v for k, v in belt.tolerances.items() if not k.endswith('pretension')}
+    belt = replace(belt, tolerances=known)
+    settings = (('duration', '6 s'), ('amplitude', '40 deg'))
+    slack = ('pretension', 'cable_upper', {'scale': 0.08})
+    run = measured_on(belt, slack, settings=settings)
+    problem = prepared([run], belt).problem
+    start = problem.fitted(problem.empty)
+    candidate = Candidate('pretension', 'cable_upper')
+    sizes = [values['scale'] for _, values in Starting(problem, start).of(candidate)]
+    assert sizes[0] == 0.7
+    assert len(sizes) > 1
+    best = Screen(problem, start).proposals(candidate)[0]
+    assert best.gain > 0.1 * start.cost
+    assert best.values['scale'] < 0.5

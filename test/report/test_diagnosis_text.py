@@ -129,6 +129,7 @@ def test_summary_tells_what_is_left_and_what_is_next(case):
 
 def test_the_rest_and_its_probability_do_not_contradict_one_another(case):
     diagnosis, _ = case('three_causes')
+    assert diagnosis.beside == ()
     for after, probability, said in (
         (3.0, 0.01, 'no more than the laws of the named causes may be wrong by'),
         (1.05, 0.99, 'hardly more than noise, but has a form that noise has not'),
