@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import as_recorded, drives, encoder_channels, motor_channels
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import segment_of
@@ -78,18 +79,40 @@ def test_gain_and_limit_are_those_of_the_motor(belt):
     assert quarter[-1] == pytest.approx(0.25 * plain[-1], rel=1e-3)
 
 
-@pytest.mark.parametrize(('steps', 'late'), [(True, 0.0), (False, 0.01)])
-def test_a_command_that_moves_by_steps_holds_until_the_next(belt, steps, late):
-    """Fifty readings a second: taken for a line, a step would begin half of one too soon."""
-    time = 0.02 * np.arange(200)
+@pytest.mark.parametrize(
+    ('sampling', 'steps', 'early'),
+    [(0.02, True, 0.0), (0.02, False, 0.0), (0.005, True, 0.0), (0.005, False, 0.0025)],
+)
+def test_a_command_holds_until_the_next(belt, sampling, steps, early):
+    """One that comes seldom or moves by steps: as a line, a step begins half a sample too soon."""
+    time = sampling * np.arange(round(4.0 / sampling))
     level = np.where((time // 0.5) % 2, 0.3, -0.2)
-    own = level if steps else level + 1e-6 * np.arange(200)
+    own = level if steps else level + 1e-6 * np.arange(len(time))
     channels = {
         s.channel: Channel(s.channel, time, own if s.kind == 'motor_torque' else 0.0 * own)
         for s in belt.sensors
     }
-    segment = segment_of(belt, Recording('belt', channels), 0.02)
+    segment = segment_of(belt, Recording('belt', channels), sampling)
     row = segment.motion.value[len(segment.prescribed)]
-    # the first step comes at half a second; a bin's middle is a hundredth after its beginning
-    rise = float(np.interp(0.05, row[20:30], segment.time[20:30]))
-    assert rise == pytest.approx(0.5 - late, abs=1e-3)
+    when = segment.start + segment.time
+    near = np.abs(when - 0.5) < 0.09
+    rise = float(np.interp(0.05, row[near], when[near]))
+    assert rise == pytest.approx(0.5 - early, abs=1e-3)
+
+
+def test_where_torques_come_seldom_bins_are_finer_and_readings_in_their_middles(belt):
+    time = 0.02 * np.arange(200)
+    value = np.sin(time)
+    channels = {s.channel: Channel(s.channel, time, value) for s in belt.sensors}
+    run = Recording('belt', channels)
+    assert bin_length([run], belt) == pytest.approx(0.004)
+    segment = segment_of(belt, run, 0.004)
+    read = np.isfinite(segment.measured[0].value)
+    assert read.sum() == len(time) - 1
+    assert (segment.start + segment.time)[read] == pytest.approx(time[:-1])
+    assert segment.measured[0].value[read] == pytest.approx(value[:-1])
+    assert segment.spacing == pytest.approx(0.02)
+    # hours of it are seen as coarsely as ever
+    long = 0.02 * np.arange(30_000)
+    hours = {s.channel: Channel(s.channel, long, np.sin(long)) for s in belt.sensors}
+    assert bin_length([Recording('belt', hours)], belt) == pytest.approx(0.02)
