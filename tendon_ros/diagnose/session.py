@@ -23,6 +23,7 @@ from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.intake import admitted
+from tendon_ros.diagnose.intake.commands import line_words
 from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intake.stamps import as_sampled
@@ -151,6 +152,7 @@ def diagnose(
             *counted,
             *strong_words(runs, instrument),
             *said_of_torque(instrument),
+            *line_words(runs, instrument),
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *gather.absurd_words(moved),

@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.diagnose.intake.commands import line_words
 from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import as_recorded, drives, encoder_channels, motor_channels
 from tendon_ros.identify.rollout import Rollouts
@@ -80,11 +81,19 @@ def test_gain_and_limit_are_those_of_the_motor(belt):
 
 
 @pytest.mark.parametrize(
-    ('sampling', 'steps', 'early'),
-    [(0.02, True, 0.0), (0.02, False, 0.0), (0.005, True, 0.0), (0.005, False, 0.0025)],
+    ('sampling', 'tick', 'steps', 'early'),
+    [
+        (0.02, 0.001, True, 0.0),
+        (0.02, 0.001, False, 0.01),
+        # as seldom as it is set
+        (0.02, 0.02, False, 0.0),
+        (0.005, 0.005, True, 0.0),
+        (0.005, 0.005, False, 0.0025),
+    ],
 )
-def test_a_command_holds_until_the_next(belt, sampling, steps, early):
-    """One that comes seldom or moves by steps: as a line, a step begins half a sample too soon."""
+def test_a_command_holds_until_the_next(belt, sampling, tick, steps, early):
+    """One that is set seldom or by steps: as a line, a step begins half a sample too soon."""
+    belt = replace(belt, control_period=tick)
     time = sampling * np.arange(round(4.0 / sampling))
     level = np.where((time // 0.5) % 2, 0.3, -0.2)
     own = level if steps else level + 1e-6 * np.arange(len(time))
@@ -92,7 +101,9 @@ def test_a_command_holds_until_the_next(belt, sampling, steps, early):
         s.channel: Channel(s.channel, time, own if s.kind == 'motor_torque' else 0.0 * own)
         for s in belt.sensors
     }
-    segment = segment_of(belt, Recording('belt', channels), sampling)
+    run = Recording('belt', channels)
+    segment = segment_of(belt, run, sampling)
+    assert bool(line_words([run], belt)) == (not steps and tick < sampling)
     row = segment.motion.value[len(segment.prescribed)]
     when = segment.start + segment.time
     near = np.abs(when - 0.5) < 0.09
