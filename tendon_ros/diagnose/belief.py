@@ -19,7 +19,7 @@ from tendon_ros.diagnose.bent import is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils
+from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils, takes_noise
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
@@ -94,7 +94,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
     beside = {
         k
         for k, cause in enumerate(causes)
-        if k not in accepted and not cause.instants and not spoils(ready, found, found.without[k])
+        if k not in accepted
+        and not cause.instants
+        and not spoils(ready, found, found.without[k])
+        # who is fitted next to what only takes noise comes out too small
+        and not takes_noise(ready.problem, found, k)
     }
     return Belief(
         weighed,

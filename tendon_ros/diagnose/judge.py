@@ -193,9 +193,8 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing
 
 
-#: noise power per sample up to which what is left without a cause may be noise; and up to which it
-#: is less than noise, where that was taken for more than it is
-NOISY, QUIET = 1.1, 0.5
+#: noise power per sample up to which what is left without a cause may be noise
+NOISY = 1.1
 #: part of what a cause takes away that neighbouring samples share, unless it is none; and the same
 #: where guessed numbers can do most of what it does, all but so much of the amplitude
 SHARED, SHARED_BESIDE, APART = 0.3, 0.6, 0.5
@@ -209,35 +208,23 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     how much depends on the inertia that they are multiplied by. If one is late, for one, a guessed
     inertia may be small: less is left, but what was left before was noise and no gap.
 
-    How much noise counts make is also said with caution, and where no more than half of it is left
-    without a cause there is nothing to explain.
-
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
-    :return: whether little of what it takes away has any form, and without it less than noise is
-        left where it shows, or no more than noise at all and it is one of these encoders; more
-        form it must have where guesses could do most of it as well.
+    :return: whether it is one of these encoders, nothing but noise is left without it, and little
+        of what it takes away has any form; more of it must have where guesses could do most of it
+        as well.
     """
     without, final = found.without[k], found.final
-    shared = problem.structured(without.left) - problem.structured(final.left)
-    gain = gains(problem, without, final)[0]
-    formless = shared < SHARED * gain
-    if formless and _where_it_shows(problem, without, final) < QUIET:
-        return True
     driving = {d.sensor.name for d in drives(problem.rollouts.instrument)}
     place = final.model.causes[k].place
     if place not in driving or without.cost > NOISY * len(without.left):
         return False
-    return formless or (shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART)
-
-
-def _where_it_shows(problem: Problem, without: Fit, final: Fit) -> float:
-    """Return what is left without a cause, in noise powers, of channels by what it takes there."""
-    then, last = (by_channel(problem, fit.left) for fit in (without, final))
-    gained = {c: max(0.0, then[c] - last[c]) for c in then}
-    every = max(sum(gained.values()), 1e-12)
-    return sum(then[c] * gained[c] for c in then) / every
+    shared = problem.structured(without.left) - problem.structured(final.left)
+    gain = gains(problem, without, final)[0]
+    if shared < SHARED * gain:
+        return True
+    return shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART
 
 
 def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:

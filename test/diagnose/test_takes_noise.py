@@ -26,9 +26,6 @@ from tendon_ros.model.instrument_file import load_instrument
         ('encoder_body', 3.0, 0.0, 0.3, False),
         # it has nothing to do with how counts become torques
         ('pulley_body', 0.9, 0.0, 1.0, False),
-        # noise was taken for more than it is
-        ('pulley_body', 0.4, 0.0, 1.0, True),
-        ('pulley_body', 0.4, 0.2, 1.0, False),
     ],
 )
 def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
@@ -47,7 +44,6 @@ def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
     problem = SimpleNamespace(
         structured=lambda left: shared if left is without.left else 0.0,
         rollouts=rollouts,
-        channels=lambda: {'torque': np.ones(100, dtype=bool)},
     )
     found = SimpleNamespace(without=[without], final=final)
     assert takes_noise(problem, found, 0) == noise
@@ -62,5 +58,20 @@ def test_such_a_cause_is_not_believed(measured_on, monkeypatch):
     final = problem.problem.fitted(start.model.joined(friction, {'torque': 0.2}))
     found = Found(states=[start, final], rivals=[[]], without=[start])
     assert belief(problem, found).weighed[0].chance > IDLE
-    monkeypatch.setattr(judge, 'takes_noise', lambda *_: True)
+    for module in ('judge', 'belief'):
+        monkeypatch.setattr(f'tendon_ros.diagnose.{module}.takes_noise', lambda *_: True)
     assert belief(problem, found).weighed[0].chance == IDLE
+    # nor is it kept for prediction: whoever is fitted next to it would come out too small
+    assert belief(problem, found).kept == ()
+
+
+def test_what_is_doubted_for_another_reason_is_kept(measured_on):
+    body = load_instrument('single_body')
+    run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}))
+    problem = prepared([run], body)
+    start = problem.problem.fitted(problem.problem.empty)
+    friction = Candidate('coulomb_friction', 'pulley_body')
+    final = problem.problem.fitted(start.model.joined(friction, {'torque': 0.2}))
+    found = Found(states=[start, final], rivals=[[]], without=[start], unmet=[friction])
+    assert belief(problem, found).named == {}
+    assert belief(problem, found).kept == (0,)

@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 #: samples without a gap that tell how even they are
 RUN = 100
 #: part of the time between samples that a stamp may be off, and below which it is even
-FAR, EVEN = 0.45, 1e-5
+FAR, EVEN = 0.45, 1e-4
 #: part of it that a longer step is off a whole number of them, from which on it is a pause
 OUT = 0.25
 #: part of the scatter that readings follow at most, and how well that must be known
