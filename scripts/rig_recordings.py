@@ -21,7 +21,7 @@ import numpy as np
 from tendon_ros.base.recording import Recording
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
-from tendon_ros.model.trajectory_choice import chosen
+from tendon_ros.model.trajectory_choice import chosen_trajectory
 
 OUT = Path(__file__).parents[1] / 'docs' / 'rigs'
 DEG = 180.0 / math.pi
@@ -150,7 +150,7 @@ def recorded(name: str, rig: Rig) -> Recording:
         path = Path(folder) / f'{name}.yaml'
         path.write_text(f'base: {name}\neffects:{rig.truth}')
         truth = load_instrument(path)
-    trajectory = chosen('multisine', truth.motor_names, rig.motion)
+    trajectory = chosen_trajectory('multisine', truth.motor_names, rig.motion)
     return simulate(truth, trajectory, rate=1000.0, seed=4)
 
 

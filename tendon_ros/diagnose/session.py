@@ -22,8 +22,8 @@ from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
+from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.intake.commands import line_words
 from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intake.stamps import as_sampled
@@ -96,7 +96,7 @@ def diagnose(
     intake = admitted(recordings, instrument)
     runs, evened = as_sampled(intake.recordings, instrument)
     instrument, counted = as_counted(runs, instrument)
-    ready = prepared(runs, instrument, jobs)
+    ready, instrument, held_on = as_set(prepared(runs, instrument, jobs), runs, instrument, jobs)
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds)
@@ -152,7 +152,7 @@ def diagnose(
             *counted,
             *strong_words(runs, instrument),
             *said_of_torque(instrument),
-            *line_words(runs, instrument),
+            *held_on,
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *gather.absurd_words(moved),

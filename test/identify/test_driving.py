@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.diagnose.intake.commands import line_words
+from tendon_ros.diagnose.intake.commands import lines
 from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import as_recorded, drives, encoder_channels, motor_channels
 from tendon_ros.identify.rollout import Rollouts
@@ -103,7 +103,7 @@ def test_a_command_holds_until_the_next(belt, sampling, tick, steps, early):
     }
     run = Recording('belt', channels)
     segment = segment_of(belt, run, sampling)
-    assert bool(line_words([run], belt)) == (not steps and tick < sampling)
+    assert bool(lines([run], belt)) == (not steps and sampling > 0.01 > tick)
     row = segment.motion.value[len(segment.prescribed)]
     when = segment.start + segment.time
     near = np.abs(when - 0.5) < 0.09

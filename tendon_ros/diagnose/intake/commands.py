@@ -4,35 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.segment import holds, seldom
 from tendon_ros.model.instrument import Instrument
 
 
-def line_words(recordings: Sequence[Recording], instrument: Instrument) -> list[str]:
+def lines(recordings: Sequence[Recording], instrument: Instrument) -> dict[str, float]:
     """
-    Say which torques are taken for a line from sample to sample though they may be held.
+    Return the torques that would be taken for a line from sample to sample, seldom as they are.
 
     :param recordings: of one rig.
     :param instrument: its file.
-    :return: a sentence; none where none is.
+    :return: the longest time between samples [s] by the sensor's name.
     """
-    tick = instrument.control_period
-    driving = [d.sensor for d in drives(instrument) if d.by_torque]
-    lines = [
-        (s.name, r[s.channel].sampling)
-        for s in driving
-        for r in recordings
-        if s.channel in r and seldom(r[s.channel]) and not holds(r[s.channel], tick)
-    ]
-    if not lines:
-        return []
-    rate = 1.0 / max(sampling for _, sampling in lines)
-    return [
-        f'{listed(dict.fromkeys(name for name, _ in lines))}: {rate:.3g} readings a second of a '
-        f'controller that ticks {1.0 / tick:.4g} times: taken for a line from one to the next; if '
-        'a reading is what was set until the next, such as a voltage, say so in the instrument '
-        f'file: control: {{rate: {rate:.3g} Hz}}'
-    ]
+    found: dict[str, float] = {}
+    for sensor in (d.sensor for d in drives(instrument) if d.by_torque):
+        for recording in recordings:
+            if sensor.channel not in recording:
+                continue
+            channel = recording[sensor.channel]
+            if seldom(channel) and not holds(channel, instrument.control_period):
+                found[sensor.name] = max(found.get(sensor.name, 0.0), channel.sampling)
+    return found
