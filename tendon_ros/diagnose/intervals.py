@@ -165,6 +165,8 @@ def _by_form(parameter: Parameter, value: float, form: float) -> float:
         return SUDDEN / 4.0
     if parameter.search in ('phase', 'share'):
         return form
+    if parameter.search == 'cycles':  # waves are counted along the whole way
+        return SIZE_FORM * abs(value)
     if parameter.search in ('level', 'rest'):
         return form * abs(value)
     return 2.0 * form * abs(value) if parameter.is_shape else form * abs(value - parameter.neutral)

@@ -2,7 +2,7 @@
 The motions among which the next experiment is chosen.
 
 Six shapes, periodic over one cycle: three multisines, ramps, holds with reversals, quick steps.
-Each moves one motor or all of them, with the tip free or pressed against a contact.
+Each moves one motor or all of them, touching nothing or pressed against a contact.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Motion:
     def sentence(self) -> str:
         """What is to be done."""
         names = ' and '.join(self.swing) if len(self.swing) < 3 else 'all motors'
-        where = f'pressed against {self.against}' if self.against else 'with the tip free'
+        where = f'pressed against {self.against}' if self.against else 'touching nothing'
         far = math.degrees(self.amplitude) * (2.0 if self.start else 1.0)
         span = f'by {far:.1f} deg' if self.start else f'by up to {far:.1f} deg either way'
         return f'{_WORDS[self.shape].format(motors=names)} {span}, {where}'

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.intervals import deviations, mean_square_interval, parameter_intervals
+from tendon_ros.diagnose.intervals import (
+    _by_form,
+    deviations,
+    mean_square_interval,
+    parameter_intervals,
+)
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
@@ -125,3 +130,10 @@ def test_no_number_of_recordings_tells_the_scale_of_what_is_guessed(measured_on)
         # parts of what was found: each fit ends where it likes on the way along the scale
         widths.append((high - low) / fit.model.values(0)['torque'])
     assert widths[1] > 0.5 * widths[0]
+
+
+def test_waves_are_counted_along_the_whole_way():
+    """What a ripple's law gets wrong is its height, not how many waves a turn has."""
+    parameters = {p.name: p for p in Candidate('torque_ripple', 'motor_M').parameters}
+    assert _by_form(parameters['cycles'], 629.0, 0.12) < 0.03 * 629.0
+    assert _by_form(parameters['amplitude'], 6.0, 0.12) == pytest.approx(0.12 * 6.0)
