@@ -26,7 +26,6 @@ from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
-from tendon_ros.diagnose.intake.stamps import as_sampled
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -94,7 +93,7 @@ def diagnose(
     given = instrument
     instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
-    runs, evened = as_sampled(intake.recordings, instrument)
+    runs = intake.recordings
     instrument, counted = as_counted(runs, instrument)
     ready, instrument, held_on = as_set(prepared(runs, instrument, jobs), runs, instrument, jobs)
     measured = {name for r in runs for name in r.channels}
@@ -148,7 +147,6 @@ def diagnose(
         next_experiment=ahead,
         left_out=(
             *intake.left_out,
-            *evened,
             *counted,
             *strong_words(runs, instrument),
             *said_of_torque(instrument),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.stamps import as_sampled, even_times, followed
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -63,7 +64,7 @@ def test_readings_that_were_late_keep_their_stamps(body, run, times):
     _, late = times
     given = stamped(run, late, late)
     [kept], said = as_sampled([given], body)
-    assert said == ()
+    assert said == []
     assert kept is given
 
 
@@ -72,7 +73,7 @@ def test_what_is_even_or_stands_still_is_left_alone(body, run, times):
     assert even_times(even) is None
     assert even_times(late[:50]) is None
     still = stamped(run, late, np.full_like(late, 2.0))
-    assert as_sampled([still], body) == ((still,), ())
+    assert as_sampled([still], body) == ((still,), [])
 
 
 def test_a_pause_ends_at_any_time():
@@ -95,3 +96,11 @@ def test_how_far_readings_follow_is_known_where_something_moves(times):
         assert follows == pytest.approx(part, abs=0.06)
         assert known < 0.08
     assert followed(late, even, [(Channel('a', late, 0.0 * late), COUNT)])[1] == np.inf
+
+
+def test_an_intake_has_even_stamps_and_says_so(body, run, times):
+    even, late = times
+    intake = admitted([stamped(run, late, even)], body)
+    [mended] = intake.recordings
+    assert np.ptp(mended['actuator/pulley_body/position'].time - even) < 2e-5
+    assert any('sampled evenly' in text for text in intake.left_out)

@@ -21,6 +21,7 @@ from tendon_ros.diagnose.intake.motion import moving
 from tendon_ros.diagnose.intake.plausible import plausible
 from tendon_ros.diagnose.intake.setpoints import followed
 from tendon_ros.diagnose.intake.sorting import distinct, of_one_rig
+from tendon_ros.diagnose.intake.stamps import as_sampled
 from tendon_ros.diagnose.intake.step import Sifted
 from tendon_ros.model.instrument import Instrument
 
@@ -35,6 +36,7 @@ _STEPS: tuple[Callable[[Sequence[Recording], Instrument], Sifted], ...] = (
     plausible,
     unclipped,
     fitting,
+    as_sampled,
 )
 
 
@@ -44,8 +46,9 @@ class Intake:
     What a diagnosis works on.
 
     ``recordings`` have unique names, every motor's position, and something to compare; their
-    channels keep their own stamps, and lack the samples that cannot be compared. ``left_out``
-    holds one sentence for each thing that was left out, with its mend.
+    channels keep their own stamps, unless those scatter where the motion does not, and lack the
+    samples that cannot be compared. ``left_out`` holds one sentence for each thing that was left
+    out, with its mend.
     """
 
     recordings: tuple[Recording, ...]

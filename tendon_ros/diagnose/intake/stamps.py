@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.quantity import written
 from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.diagnose.intake.step import Sifted
 from tendon_ros.identify.segment import reading_error
 from tendon_ros.model.instrument import Instrument, Sensor
 
@@ -34,9 +35,7 @@ OUT = 0.25
 FOLLOWS, KNOWN = 0.5, 0.1
 
 
-def as_sampled(
-    recordings: Sequence[Recording], instrument: Instrument
-) -> tuple[tuple[Recording, ...], tuple[str, ...]]:
+def as_sampled(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
     """
     Return recordings with the times at which encoders were read, not those of their stamps.
 
@@ -45,7 +44,7 @@ def as_sampled(
     :return: the recordings, and a sentence on each whose stamps scatter and whose motion does not.
     """
     evened = [_evened(recording, instrument) for recording in recordings]
-    return tuple(r for r, _ in evened), tuple(s for _, said in evened for s in said)
+    return tuple(r for r, _ in evened), [s for _, said in evened for s in said]
 
 
 def _evened(recording: Recording, instrument: Instrument) -> tuple[Recording, list[str]]:
