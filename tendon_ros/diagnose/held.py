@@ -44,18 +44,19 @@ def as_set(
     slow = replace(instrument, control_period=max(found.values()))
     held = prepared(recordings, slow, jobs)
     rate = 1.0 / slow.control_period
-    names = ', '.join(found)
+    said = f'{", ".join(found)}: {rate:.3g} readings a second '
     if _misfit(held, jobs) < LESS * _misfit(ready, jobs):
-        return held, slow, [
-            f'{names}: {rate:.3g} readings a second are taken for what was set until the next, '
-            'since that leaves less than a line from one to the next; say so in the instrument '
-            f'file, control: {{rate: {rate:.3g} Hz}}, for simulations'
-        ]  # fmt: skip
-    return ready, instrument, [
-        f'{names}: {rate:.3g} readings a second of a controller that ticks '
-        f'{1.0 / instrument.control_period:.4g} times: taken for a line from one to the next, '
-        'which leaves no more than held ones'
-    ]  # fmt: skip
+        said += (
+            'are taken for what was set until the next, since that leaves less than a line from '
+            f'one to the next; say so in the instrument file, control: {{rate: {rate:.3g} Hz}}, '
+            'for simulations'
+        )
+        return held, slow, [said]
+    said += (
+        f'of a controller that ticks {1.0 / instrument.control_period:.4g} times are taken for a '
+        'line from one to the next, since held ones do not leave less'
+    )
+    return ready, instrument, [said]
 
 
 def _misfit(ready: Prepared, jobs: int) -> float:

@@ -49,29 +49,34 @@ def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
     assert takes_noise(problem, found, 0) == noise
 
 
-def test_such_a_cause_is_not_believed(measured_on, monkeypatch):
+FRICTION = Candidate('coulomb_friction', 'pulley_body')
+
+
+@pytest.fixture
+def rubbing(measured_on):
+    """Return a problem on a body that rubs, and what a search would leave that found it."""
     body = load_instrument('single_body')
     run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}))
-    problem = prepared([run], body)
-    start = problem.problem.fitted(problem.problem.empty)
-    friction = Candidate('coulomb_friction', 'pulley_body')
-    final = problem.problem.fitted(start.model.joined(friction, {'torque': 0.2}))
-    found = Found(states=[start, final], rivals=[[]], without=[start])
-    assert belief(problem, found).weighed[0].chance > IDLE
+    ready = prepared([run], body)
+    start = ready.problem.fitted(ready.problem.empty)
+    final = ready.problem.fitted(start.model.joined(FRICTION, {'torque': 0.2}))
+    return ready, Found(states=[start, final], rivals=[[]], without=[start])
+
+
+def test_such_a_cause_is_neither_believed_nor_kept(rubbing, monkeypatch):
+    """Who is fitted next to it would come out too small."""
+    sure = belief(*rubbing)
+    assert sure.weighed[0].chance > IDLE
+    assert sure.kept == (0,)
     for module in ('judge', 'belief'):
         monkeypatch.setattr(f'tendon_ros.diagnose.{module}.takes_noise', lambda *_: True)
-    assert belief(problem, found).weighed[0].chance == IDLE
-    # nor is it kept for prediction: whoever is fitted next to it would come out too small
-    assert belief(problem, found).kept == ()
+    idle = belief(*rubbing)
+    assert idle.weighed[0].chance == IDLE
+    assert idle.kept == ()
 
 
-def test_what_is_doubted_for_another_reason_is_kept(measured_on):
-    body = load_instrument('single_body')
-    run = measured_on(body, ('coulomb_friction', 'pulley_body', {'torque': 0.2}))
-    problem = prepared([run], body)
-    start = problem.problem.fitted(problem.problem.empty)
-    friction = Candidate('coulomb_friction', 'pulley_body')
-    final = problem.problem.fitted(start.model.joined(friction, {'torque': 0.2}))
-    found = Found(states=[start, final], rivals=[[]], without=[start], unmet=[friction])
-    assert belief(problem, found).named == {}
-    assert belief(problem, found).kept == (0,)
+def test_what_is_doubted_for_another_reason_is_kept(rubbing):
+    ready, found = rubbing
+    found.unmet = [FRICTION]
+    assert belief(ready, found).named == {}
+    assert belief(ready, found).kept == (0,)
