@@ -78,13 +78,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     undone |= ahead.late if ahead else frozenset()
     left = _left_without(ready, found, undone)
     weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
-    able = [
-        k
-        for k, cause in enumerate(causes)
-        if k not in undone
-        and cause not in found.unmet
-        and not spent(cause, found.final.model.values(k))
-    ]
+    able = [k for k in range(len(causes)) if k not in undone and not _open(found, k)]
     together = companies(ready, found, weighed, able, left)
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
@@ -132,9 +126,8 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))
     # beside a strong effect many differ by less than its law may be wrong by
     as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
-    vague = len({cause.effect} | as_good) > ALIKE or cause in found.unmet
-    values = found.final.model.values(k)
-    vague |= is_constant(ready.problem, cause, values) or spent(cause, values)
+    vague = len({cause.effect} | as_good) > ALIKE or _open(found, k)
+    vague |= is_constant(ready.problem, cause, found.final.model.values(k))
     return Weighed(
         cause=cause,
         equal=equal,
@@ -142,3 +135,9 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
         chance=min(IDLE, likely) if undone or vague else likely,
         without=without,
     )
+
+
+def _open(found: Found, k: int) -> bool:
+    """Return whether nobody was tried in its place, or no value of it tells what is there."""
+    cause = found.final.model.causes[k]
+    return cause in found.unmet or spent(cause, found.final.model.values(k))

@@ -13,15 +13,9 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
-from tendon_ros.identify.segment import (
-    by_seldom_torque,
-    FITTED,
-    motion_of,
-    reading_error,
-    SETTLING,
-    USUAL_BIN,
-)
+from tendon_ros.identify.segment import FITTED, motion_of, reading_error, SETTLING
 from tendon_ros.identify.smoothing import recounted
+from tendon_ros.identify.torque import by_seldom_torque, USUAL_BIN
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 

@@ -15,22 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
-from tendon_ros.identify.driving import Drive, drives
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.loads import loads
 from tendon_ros.identify.means import binned
 from tendon_ros.identify.smoothing import at_rest, smoothed
+from tendon_ros.identify.torque import by_seldom_torque, torque_of
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-#: [s] of a bin, a tenth of the time in which a cable-driven instrument answers
-USUAL_BIN = 0.008
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
-STEPS = 0.5  # part of its samples that are as the one before, of a torque that moves by steps
-SAME = 0.9  # part of the time between its samples that the period of its controller is at least
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
@@ -153,7 +150,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     bins = int((end - start) / period)
     time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
     rows = [
-        _torque(recording[d.sensor.channel], start, period, bins, instrument.control_period)
+        torque_of(recording[d.sensor.channel], start, period, bins, instrument.control_period)
         if d.by_torque
         else _motion(recording[d.sensor.channel], d.sensor, start, period, bins)
         for d in driving
@@ -186,55 +183,6 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
             recording[name].sampling for name in (*known, *(m.sensor.channel for m in measured))
         ),
     )
-
-
-def by_seldom_torque(recording: Recording, driving: Sequence[Drive]) -> bool:
-    """
-    Return whether nothing but torques drives the model, and they come less often than bins.
-
-    :param recording: what was measured.
-    :param driving: what drives the model.
-    :return: whether bins are better finer than samples, with a reading in the middle of some.
-    """
-    return all(d.by_torque and seldom(recording[d.sensor.channel]) for d in driving)
-
-
-def seldom(channel: Channel) -> bool:
-    """
-    Return whether readings come less often than bins.
-
-    :param channel: what was read.
-    :return: whether.
-    """
-    return channel.sampling > USUAL_BIN
-
-
-def holds(channel: Channel, tick: float) -> bool:
-    """
-    Return whether a torque is a command, such as a voltage, that holds until the next.
-
-    Taken for a line from sample to sample it would begin to rise half a sample before it does.
-
-    :param channel: the torque.
-    :param tick: period of the controllers [s].
-    :return: whether it moves by steps, or comes as seldom as controllers set it.
-    """
-    set_then = seldom(channel) and tick > SAME * channel.sampling
-    return set_then or bool(np.mean(np.diff(channel.value) == 0.0) > STEPS)
-
-
-def _torque(channel: Channel, start: float, period: float, bins: int, tick: float) -> FloatArray:
-    """Return the torque of each bin: it may jump, and is not smoothed."""
-    edges = start + period * np.arange(bins + 1, dtype=np.float64)
-    if holds(channel, tick):
-        # what has been given until then, without what came before the first reading
-        given = np.concatenate([[0.0], np.cumsum(channel.value[:-1] * np.diff(channel.time))])
-        until = np.interp(edges, channel.time, given)
-        first, last = channel.value[0], channel.value[-1]
-        until += first * np.minimum(0.0, edges - channel.time[0])
-        until += last * np.maximum(0.0, edges - channel.time[-1])
-        return np.asarray(np.diff(until) / period, dtype=np.float64)
-    return np.asarray(channel.at(edges[:-1] + 0.5 * period), dtype=np.float64)
 
 
 def thinned(channel: Channel) -> Channel:

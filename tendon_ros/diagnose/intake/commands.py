@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import drives
-from tendon_ros.identify.segment import holds, seldom
+from tendon_ros.identify.torque import holds, seldom
 from tendon_ros.model.instrument import Instrument
 
 
