@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import encoder_channels
+from tendon_ros.identify.hearing import heard, neighbours
 from tendon_ros.identify.repetition import unrepeated
-from tendon_ros.identify.residuals import neighbours
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Measured, reading_error, Segment
 from tendon_ros.identify.smoothing import recounted, smoothed
@@ -64,7 +64,7 @@ class Noise:
             for n, (m, row, c, a) in enumerate(
                 zip(segment.measured, rows, by_counts, apart, strict=True)
             ):
-                h = heard(m, row, near)
+                h = _heard(m, row, near)
                 if n in resting:
                     c = _no_quieter(c, resting[n])
                 # what is heard and what counts make does not repeat itself either
@@ -111,23 +111,11 @@ def _no_quieter(counts: FloatArray, still: BoolArray) -> FloatArray:
     return np.where(still, np.maximum(counts, np.median(moving)), counts)
 
 
-def heard(measured: Measured, left: FloatArray, apart: int) -> float:
-    """
-    Return the noise of a channel that bins near each other do not share.
-
-    :param measured: the channel.
-    :param left: what a model leaves of it, shape (bins,), in its unit.
-    :param apart: how many bins apart noise is a difference and motion is not.
-    :return: one deviation, in its unit.
-    """
-    # where samples are seldom, some bins have none
-    left = left[np.isfinite(left)]
-    # second differences: what a wrong model leaves of a motion is nearly straight for so long
-    bend = left[2 * apart :] - 2.0 * left[apart:-apart] + left[: -2 * apart]
-    found = 1.4826 * float(np.median(np.abs(bend))) / np.sqrt(6.0) if bend.size else 0.0
+def _heard(measured: Measured, left: FloatArray, apart: int) -> float:
+    """Return the noise of a channel that bins near each other do not share, in its unit."""
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
     span = float(np.nanmax(np.abs(measured.value), initial=0.0))
-    return max(found, measured.floor, 1e-6 * span + 1e-12)
+    return max(heard(left, apart), measured.floor, 1e-6 * span + 1e-12)
 
 
 def _counted(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-import math
 from typing import Self
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
+from tendon_ros.identify.hearing import neighbours, unshared
 from tendon_ros.identify.rollout import fineness, Rollouts, ROUGHER
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse
@@ -23,9 +23,6 @@ from tendon_ros.model.instrument import EffectUse
 FloatArray = NDArray[np.float64]
 
 FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
-NEAR = 0.04  # [s] within which noise is a difference and motion is not
-#: bins, and [s] at most, beyond which accelerations that counts have made up share nothing
-COUNTED, LATER = 3, 0.06
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
 
@@ -248,8 +245,7 @@ class Residuals:
             apart = neighbours(segment.spacing, counted=bool(segment.prescribed))
             if len(own) <= apart:
                 continue
-            step = own[apart:] - own[:-apart]
-            noise = 0.5 * float(step @ step) * len(own) / len(step)
+            noise = len(own) * unshared(own, apart)
             # what keeps below noise that has a shape is no gap
             measured = segment.measured[c]
             shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
@@ -266,18 +262,6 @@ class Residuals:
         :return: segment, channel, and its samples in the order of time.
         """
         return [(n, c, vector[span]) for n, c, span in self.spans()]
-
-
-def neighbours(period: float, *, counted: bool) -> int:
-    """
-    Return how far bins are apart between which noise is a difference and motion is not.
-
-    :param period: time between values [s].
-    :param counted: whether the motion was counted, so that acceleration is partly made up.
-    :return: in bins.
-    """
-    apart = max(1, round(NEAR / period))
-    return max(apart, min(COUNTED, math.ceil(LATER / period))) if counted else apart
 
 
 def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:

@@ -1,0 +1,81 @@
+"""
+What of a series is noise: what bins near each other do not share.
+
+Motion is the same a few bins later, noise is not. What shakes is neither: within some hundredths
+of a second it goes to and fro like noise, and a whole period later it is where it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+NEAR = 0.04  # [s] within which noise is a difference and motion is not
+#: bins, and [s] at most, beyond which accelerations that counts have made up share nothing
+COUNTED, LATER = 3, 0.06
+PERIODS = 3  # times as far apart as neighbours that periods of what shakes are looked for
+#: part of the power that neighbours do not share from which on less of it a little later is a
+#: period and no chance
+SHAKES = 0.5
+LOUD = 2.0  # noise powers that are no noise: what is left may shake
+
+
+def neighbours(period: float, *, counted: bool) -> int:
+    """
+    Return how far bins are apart between which noise is a difference and motion is not.
+
+    :param period: time between values [s].
+    :param counted: whether the motion was counted, so that acceleration is partly made up.
+    :return: in bins.
+    """
+    apart = max(1, round(NEAR / period))
+    return max(apart, min(COUNTED, math.ceil(LATER / period))) if counted else apart
+
+
+def heard(left: FloatArray, apart: int) -> float:
+    """
+    Return the noise of a series of which a wrong model may leave motion.
+
+    :param left: what a model leaves of a channel, shape (bins,), NaN where nothing was measured.
+    :param apart: how many bins apart noise is a difference and motion is not.
+    :return: one deviation, in its unit.
+    """
+    # where samples are seldom, some bins have none
+    known = left[np.isfinite(left)]
+
+    def power(lag: int) -> float:
+        # second differences: what a wrong model leaves of a motion is nearly straight for so long
+        bend = known[2 * lag :] - 2.0 * known[lag:-lag] + known[: -2 * lag]
+        return float(np.median(np.abs(bend))) ** 2 if bend.size else math.inf
+
+    found = _quietest(power, apart)
+    return 1.4826 * math.sqrt(found / 6.0) if math.isfinite(found) else 0.0
+
+
+def unshared(left: FloatArray, apart: int) -> float:
+    """
+    Return the power of a series that is noise.
+
+    :param left: what a model leaves, in noise deviations, shape (samples,).
+    :param apart: how many bins apart noise is a difference and motion is not; less than samples.
+    :return: mean square in noise deviations.
+    """
+
+    def power(lag: int) -> float:
+        step = left[lag:] - left[:-lag]
+        return 0.5 * float(step @ step) / len(step) if step.size else math.inf
+
+    # as much as noise is for certain no shaking, and all of it is soon said
+    return found if (found := power(apart)) <= LOUD else _quietest(power, apart)
+
+
+def _quietest(power: Callable[[int], float], apart: int) -> float:
+    """Return a power of neighbours, or of those a period apart where what is left shakes."""
+    usual = power(apart)
+    lowest = min(power(lag) for lag in range(apart + 1, PERIODS * apart + 1))
+    return lowest if lowest < SHAKES * usual else usual

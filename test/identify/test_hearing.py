@@ -1,0 +1,42 @@
+"""What is noise in what a model leaves, and what has structure."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.identify.hearing import heard, neighbours, unshared
+
+
+@pytest.mark.parametrize('period', [0.002, 0.008, 0.017, 0.02, 0.024])
+def test_acceleration_that_counts_make_up_has_no_structure(period):
+    # a second difference of angles whose errors share nothing beyond a bin
+    error = np.random.default_rng(4).normal(size=20_000)
+    made_up = np.diff(error, 2)
+    power = unshared(made_up, neighbours(period, counted=True))
+    assert power == pytest.approx(np.mean(made_up**2), rel=0.05)
+
+
+def test_slow_samples_and_motion_without_counts_are_compared_sooner():
+    assert neighbours(0.1, counted=True) == 1
+    assert neighbours(0.02, counted=False) == 2
+
+
+@pytest.mark.parametrize('frequency', [28.0, 41.7, 63.0, 110.0])
+def test_what_shakes_is_no_noise(frequency):
+    # a controller with a late encoder: faster than bins that are neighbours are apart
+    time = 0.002 * np.arange(6000)
+    noise = 0.1 * np.random.default_rng(5).normal(size=time.size)
+    left = 30.0 * np.sin(2.0 * np.pi * frequency * time) + noise
+    apart = neighbours(0.002, counted=True)
+    assert heard(left, apart) < 8.0
+    assert unshared(left, apart) < 0.15 * np.mean(left**2)
+
+
+def test_noise_with_a_memory_keeps_all_its_power():
+    # a torque through a filter of 10 ms: the nearest bins share most of it
+    rng = np.random.default_rng(6)
+    left = np.zeros(20_000)
+    for n, kick in enumerate(rng.normal(size=left.size)):
+        left[n] = 0.8 * left[n - 1] + kick
+    apart = neighbours(0.002, counted=True)
+    assert heard(left, apart) == pytest.approx(np.std(left), rel=0.1)
+    assert unshared(left / np.std(left), apart) == pytest.approx(1.0, rel=0.1)
