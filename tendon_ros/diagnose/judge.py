@@ -227,6 +227,18 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     return shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART
 
 
+def leaves_gap(problem: Problem, fit: Fit) -> bool:
+    """
+    Return whether a fit leaves more than recordings without any effect do.
+
+    :param problem: the fitted bins.
+    :param fit: the fit without a cause.
+    :return: whether, in any channel. Noise is never quite known, and where it is less than was
+        thought, whoever takes some of it seems worth a lot.
+    """
+    return problem.structures(fit.left)[1] > LEFT_NOISE
+
+
 def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:
     """Return what a cause saves of squares in noise deviations that no fit saw, by the second."""
     poorer = ready.held.left(without.model)
@@ -253,7 +265,8 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     happened = bool(found.final.model.causes[k].instants)
     spoilt = not happened and spoils(ready, found, found.without[k])
     noise = not happened and takes_noise(ready.problem, found, k)
-    believed = not (spoilt or luck or drowned or noise)
+    needless = not happened and not leaves_gap(ready.problem, found.without[k])
+    believed = not (spoilt or luck or drowned or noise or needless)
     return likely if believed else min(IDLE, likely)
 
 

@@ -18,10 +18,11 @@ FloatArray = NDArray[np.float64]
 NEAR = 0.04  # [s] within which noise is a difference and motion is not
 #: bins, and [s] at most, beyond which accelerations that counts have made up share nothing
 COUNTED, LATER = 3, 0.06
-PERIODS = 3  # times as far apart as neighbours that periods of what shakes are looked for
+PERIODS = 6  # times as far apart as neighbours that periods of what shakes are looked for
 #: part of the power that neighbours do not share from which on less of it a little later is a
-#: period and no chance
-SHAKES = 0.5
+#: period and no chance; and from which on less of it between nearer bins is a motion: noise with a
+#: memory, and be it a random walk, keeps a part that is one by the bins between
+SHAKES, MOVES = 0.5, 0.01
 LOUD = 2.0  # noise powers that are no noise: what is left may shake
 
 
@@ -75,7 +76,16 @@ def unshared(left: FloatArray, apart: int) -> float:
 
 
 def _quietest(power: Callable[[int], float], apart: int) -> float:
-    """Return a power of neighbours, or of those a period apart where what is left shakes."""
+    """
+    Return the power of neighbours that is noise.
+
+    Of those a period apart where what is left shakes, of the nearest where it swings more slowly.
+    """
     usual = power(apart)
-    lowest = min(power(lag) for lag in range(apart + 1, PERIODS * apart + 1))
-    return lowest if lowest < SHAKES * usual else usual
+    later = min(power(lag) for lag in range(apart + 1, PERIODS * apart + 1))
+    nearest = power(1)
+    return min(
+        usual,
+        later if later < SHAKES * usual else usual,
+        nearest if nearest < MOVES * usual else usual,
+    )

@@ -27,7 +27,7 @@ from tendon_ros.model.simulation import along, follow
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-USUAL = 0.2  # part of a motor's torques that no unknown limit cuts off
+USUAL = 0.5  # part of a motor's torques that no unknown limit cuts off
 #: [rad] a step; a hundredth of an encoder's count
 TOLERANCE = 4e-6
 #: the same where nothing that is measured notices, the roughest first

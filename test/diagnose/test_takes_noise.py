@@ -1,5 +1,6 @@
 """What only makes less of noise is no cause."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -73,6 +74,19 @@ def test_such_a_cause_is_neither_believed_nor_kept(rubbing, monkeypatch):
     idle = belief(*rubbing)
     assert idle.weighed[0].chance == IDLE
     assert idle.kept == ()
+
+
+def test_what_leaves_no_gap_where_it_is_left_out_is_not_needed(rubbing):
+    """Where noise is less than was thought, whoever takes some of it seems worth a lot."""
+    ready, found = rubbing
+    sure = belief(ready, found)
+    # the same fit, but without it only noise is left
+    noise = (-1.0) ** np.arange(len(found.start.left))
+    quiet = replace(found.start, left=noise, cost=float(noise @ noise))
+    final = replace(found.final, left=0.3 * noise, cost=0.09 * float(noise @ noise))
+    idle = belief(ready, Found(states=[quiet, final], rivals=[[]], without=[quiet]))
+    assert (sure.kept, idle.kept) == ((0,), ())
+    assert idle.weighed[0].chance <= IDLE < sure.weighed[0].chance
 
 
 def test_what_is_doubted_for_another_reason_is_kept(rubbing):

@@ -31,6 +31,17 @@ def test_what_shakes_is_no_noise(frequency):
     assert unshared(left, apart) < 0.15 * np.mean(left**2)
 
 
+@pytest.mark.parametrize('frequency', [4.0, 6.0, 11.0])
+def test_what_swings_is_no_noise(frequency):
+    # a cable whose damping is a guess: slower than that, and far from straight for so long
+    time = 0.008 * np.arange(4000)
+    left = 100.0 * np.sin(2.0 * np.pi * frequency * time)
+    left += np.random.default_rng(5).normal(size=time.size)
+    apart = neighbours(0.008, counted=True)
+    assert heard(left, apart) < 10.0
+    assert unshared(left, apart) < 0.6 * np.mean(left**2)
+
+
 def test_noise_with_a_memory_keeps_all_its_power():
     # a torque through a filter of 10 ms: the nearest bins share most of it
     rng = np.random.default_rng(6)
