@@ -19,15 +19,7 @@ from tendon_ros.diagnose.bent import is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import (
-    chance,
-    equals,
-    IDLE,
-    leaves_gap,
-    signs_beside,
-    spoils,
-    takes_noise,
-)
+from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils, takes_noise
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
@@ -101,7 +93,6 @@ def belief(ready: Prepared, found: Found) -> Belief:
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
         and not takes_noise(ready.problem, found, k)
-        and leaves_gap(ready.problem, found.without[k])
     }
     return Belief(
         weighed,

@@ -211,32 +211,21 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
-    :return: whether it is one of these encoders, nothing but noise is left without it, and little
-        of what it takes away has any form; more of it must have where guesses could do most of it
-        as well.
+    :return: whether it is one of these encoders, nothing but noise is left without it, and no more
+        of that has any form than recordings without any effect leave, or little of what it takes
+        away has; more of it must have where guesses could do most of it as well.
     """
     without, final = found.without[k], found.final
     driving = {d.sensor.name for d in drives(problem.rollouts.instrument)}
     place = final.model.causes[k].place
     if place not in driving or without.cost > NOISY * len(without.left):
         return False
-    shared = problem.structured(without.left) - problem.structured(final.left)
+    before = problem.structured(without.left)
+    shared = before - problem.structured(final.left)
     gain = gains(problem, without, final)[0]
-    if shared < SHARED * gain:
+    if before < LEFT_NOISE or shared < SHARED * gain:
         return True
     return shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART
-
-
-def leaves_gap(problem: Problem, fit: Fit) -> bool:
-    """
-    Return whether a fit leaves more than recordings without any effect do.
-
-    :param problem: the fitted bins.
-    :param fit: the fit without a cause.
-    :return: whether, in any channel. Noise is never quite known, and where it is less than was
-        thought, whoever takes some of it seems worth a lot.
-    """
-    return problem.structures(fit.left)[1] > LEFT_NOISE
 
 
 def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:
@@ -265,8 +254,7 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     happened = bool(found.final.model.causes[k].instants)
     spoilt = not happened and spoils(ready, found, found.without[k])
     noise = not happened and takes_noise(ready.problem, found, k)
-    needless = not happened and not leaves_gap(ready.problem, found.without[k])
-    believed = not (spoilt or luck or drowned or noise or needless)
+    believed = not (spoilt or luck or drowned or noise)
     return likely if believed else min(IDLE, likely)
 
 
