@@ -161,6 +161,17 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     return model.values(k)['limit'] < usual
 
 
+def anything_excused(problem: Problem, model: Model) -> bool:
+    """
+    Return whether any cause of a model is such a limit.
+
+    :param problem: the data.
+    :param model: causes.
+    :return: whether.
+    """
+    return any(excuses(problem, model, k) for k in range(len(model.causes)))
+
+
 def _turned(problem: Problem, place: str) -> float:
     """Return how far a motor turned in any recording, in turns; one where nothing tells."""
     motors = problem.rollouts.instrument.motors

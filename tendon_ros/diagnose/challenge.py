@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import math
 
 from tendon_ros.diagnose.begun import Begun
-from tendon_ros.diagnose.bent import degenerate, excuses
+from tendon_ros.diagnose.bent import anything_excused, degenerate
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.one_body import divide, merge
@@ -173,7 +173,8 @@ class Challenge:
         """Return whether a rival does anything that a simpler effect does not."""
         model = rival.fit.model
         bent = degenerate(self._problem, rival.candidate, model.values(-1))
-        excuse = excuses(self._problem, model, -1)
+        # beside it another one may have become an excuse
+        excuse = anything_excused(self._problem, model)
         return not bent and not excuse and plain(self._problem, model, -1) is None
 
     def _without(self, found: Found, k: int) -> Fit:

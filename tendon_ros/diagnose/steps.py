@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, biased, degenerate, excuses
+from tendon_ros.diagnose.bent import anything_excused, at_once, biased, degenerate, excuses
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
@@ -157,7 +157,7 @@ class Steps:
             for r in self.pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
-            and not excuses(self.problem, r.fit.model, -1)
+            and not anything_excused(self.problem, r.fit.model)
         ]
         return sorted(found, key=judged_cost)
 

@@ -112,7 +112,7 @@ class Screen:
             start = Proposal(one, z, sizes, self._base(candidate))
             # the bins about an event hardly count, whatever its size: at a small one they are all
             # and a preload is asked about where it leaves a cable slack
-            sized = one.instants or any(p.search == 'slack' for p in one.parameters)
+            sized = one.instants or _slackens(one)
             at = start.steps if sized else [1.0] * len(sizes)
             judged = self._judged(start, at, self._first(start, at))
             if judged is not None:
@@ -144,7 +144,7 @@ class Screen:
         if not proposal.sizes or (proposal.gain <= 0.0 and not self.suspects(proposal.candidate)):
             return proposal
         changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
-        if changes is None:
+        if changes is None or _slackens(proposal.candidate):
             return proposal
         own = self._own(proposal.candidate)
         gain, steps = self._beside.best(changes, self._reach(proposal), own)
@@ -193,11 +193,19 @@ class Screen:
         if kept <= 3e-5 * seen:
             return replace(proposal, gain=0.0, seen=seen, own=kept)
         steps = np.clip(self._best(proposal, own), -FARTHEST, FARTHEST)
-        gain = float(self.left @ self.left - np.sum((self.left + own @ steps) ** 2))
+        gain = self._gain(own, steps)
+        # half of the way to a preload that leaves a cable slack nothing is slack
+        as_is = np.array(proposal.steps)
+        if _slackens(proposal.candidate) and self._gain(own, as_is) > 0.0:
+            steps, gain = as_is, self._gain(own, as_is)
         if gain <= 0.0:  # keep a size to speak of
             return replace(proposal, gain=0.0, seen=seen, own=kept)
         z = proposal.resized(steps.tolist())
         return replace(proposal, z=z, gain=gain, seen=seen, own=kept)
+
+    def _gain(self, own: FloatArray, steps: FloatArray) -> float:
+        """Return by how much the squares fall where sizes have gone so far."""
+        return float(self.left @ self.left - np.sum((self.left + own @ steps) ** 2))
 
     def _own(self, candidate: Candidate) -> int | None:
         """Return which unknown of the fit is the very number that a candidate moves."""
@@ -263,3 +271,8 @@ class Screen:
                 return best
             kept = np.delete(kept, int(np.argmin(found - low[kept])))
         return best
+
+
+def _slackens(candidate: Candidate) -> bool:
+    """Return whether a candidate is asked about where it leaves a cable slack."""
+    return any(p.search == 'slack' for p in candidate.parameters)

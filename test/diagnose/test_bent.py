@@ -5,7 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.bent import at_once, biased, degenerate, excuses, is_constant
+from tendon_ros.diagnose.bent import (
+    anything_excused,
+    at_once,
+    biased,
+    degenerate,
+    excuses,
+    is_constant,
+)
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
@@ -68,6 +75,9 @@ def test_a_limit_that_nearly_all_torques_pass_is_none(sound_problem, limit, excu
     model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01})
     assert excuses(sound_problem, model, 1) is excused
     assert not excuses(sound_problem, model, 0)
+    # whoever joins may bend another one into an excuse
+    friction = Candidate('coulomb_friction', 'pulley_M')
+    assert anything_excused(sound_problem, model.joined(friction, {'torque': 0.1})) is excused
 
 
 PUSH = {'torque': 0.1, 'start': 3.0, 'duration': 0.5}
