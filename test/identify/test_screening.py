@@ -84,6 +84,10 @@ def test_a_preload_is_asked_about_where_it_leaves_a_cable_slack(measured_on):
     sizes = [values['scale'] for _, values in Starting(problem, start).of(candidate)]
     assert sizes[0] == 0.7
     assert len(sizes) > 1
-    best = Screen(problem, start).proposals(candidate)[0]
+    screen = Screen(problem, start)
+    best = screen.proposals(candidate)[0]
     assert best.gain > 0.05 * start.cost
+    # half of the way there nothing is slack: it is proposed as it was tried
+    assert any(best.values['scale'] == pytest.approx(size) for size in sizes)
     assert best.values['scale'] < 0.65
+    assert screen.corrected(best) == best
