@@ -24,12 +24,15 @@ from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit
 
 FloatArray = NDArray[np.float64]
 
 #: kinds of effect that may be alike: there are five of dry friction, and no family has more. Where
 #: still others do as well, all of them do badly
 ALIKE = 5
+#: part of a size by which a cause may change where what stands for something unknown goes
+STEADY = 0.2
 
 
 @dataclass(frozen=True)
@@ -76,10 +79,13 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(ready.problem, found.final.model)
     undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
     undone |= ahead.late if ahead else frozenset()
-    left = _left_without(ready, found, undone)
-    weighed = tuple(_weighed(ready, found, k, left, k in undone) for k in range(len(causes)))
+    rest = _without(ready, found, undone)
+    weighed = tuple(
+        _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)
+        for k in range(len(causes))
+    )
     able = [k for k in range(len(causes)) if k not in undone and not _open(found, k)]
-    together = companies(ready, found, weighed, able, left)
+    together = companies(ready, found, weighed, able, rest.left)
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
@@ -104,20 +110,38 @@ def belief(ready: Prepared, found: Found) -> Belief:
     )
 
 
-def _left_without(ready: Prepared, found: Found, undone: Collection[int]) -> FloatArray:
-    """Return what the causes that do not undo each other leave, refitted."""
-    final = found.final
-    if undone:
-        rest = ready.problem.fitted(final.model.without(*undone), rounds=6, accuracy=1e-2)
-        final = rest if math.isfinite(rest.cost) else found.start
-    return final.left
+def _without(ready: Prepared, found: Found, undone: Collection[int]) -> Fit:
+    """Return the last state without the causes that undo each other, refitted."""
+    if not undone:
+        return found.final
+    rest = ready.problem.fitted(found.final.model.without(*undone), rounds=6, accuracy=1e-2)
+    return rest if math.isfinite(rest.cost) else found.start
+
+
+def _left_beside(final: Fit, rest: Fit, k: int) -> FloatArray:
+    """
+    Return what stays of all that may be believed, beside one cause.
+
+    Causes that undo each other stand for something unknown. One that has the same sizes with them
+    and without them is not what that is told by.
+    """
+    cause, sizes = final.model.causes[k], final.model.values(k)
+    if cause not in rest.model.causes:
+        return rest.left
+    alone = rest.model.values(rest.model.causes.index(cause))
+    steady = all(
+        abs(alone[p.name] - sizes[p.name]) <= STEADY * abs(sizes[p.name] - p.neutral)
+        for p in cause.parameters
+        if not p.is_shape
+    )
+    return final.left if steady else rest.left
 
 
 def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bool) -> Weighed:
     """
     Return what speaks for one cause of the last state.
 
-    ``left``: what stays of all that may be believed; ``undone``: whether others undo it.
+    ``left``: what stays of all that may be believed beside it; ``undone``: whether others undo it.
     """
     without = found.without[k]
     signs = signs_beside(ready.problem, found, without, left)

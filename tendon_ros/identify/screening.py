@@ -36,6 +36,8 @@ class Proposal:
     ``sizes``: which of its axes are sizes; ``base``: the place on them where the state already
     is; ``gain``: by how much the squares fall, to first order; ``seen``: norm of the signature of
     typical size, in noise deviations, and ``own``: the part of it that nothing else imitates.
+    ``firm``: it is what was tried: half of the way to a preload that leaves a cable slack nothing
+    is slack.
     """
 
     candidate: Candidate
@@ -45,6 +47,7 @@ class Proposal:
     gain: float = 0.0
     seen: float = 0.0
     own: float = 0.0
+    firm: bool = False
 
     @property
     def values(self) -> dict[str, float]:
@@ -106,13 +109,14 @@ class Screen:
         """
         coordinates = candidate.coordinates
         found: dict[Proposal, None] = {}
-        for one, values in self._starting.of(candidate):
+        for n, (one, values) in enumerate(self._starting.of(candidate)):
             z = coordinates.place(values)
             sizes = coordinates.sizes
-            start = Proposal(one, z, sizes, self._base(candidate))
+            slack = any(p.search == 'slack' for p in one.parameters)
+            start = Proposal(one, z, sizes, self._base(candidate), firm=slack and n > 0)
             # the bins about an event hardly count, whatever its size: at a small one they are all
             # and a preload is asked about where it leaves a cable slack
-            sized = one.instants or _slackens(one)
+            sized = one.instants or slack
             at = start.steps if sized else [1.0] * len(sizes)
             judged = self._judged(start, at, self._first(start, at))
             if judged is not None:
@@ -144,7 +148,7 @@ class Screen:
         if not proposal.sizes or (proposal.gain <= 0.0 and not self.suspects(proposal.candidate)):
             return proposal
         changes = self._changes(proposal, [step or 1.0 for step in proposal.steps])
-        if changes is None or _slackens(proposal.candidate):
+        if changes is None or proposal.firm:
             return proposal
         own = self._own(proposal.candidate)
         gain, steps = self._beside.best(changes, self._reach(proposal), own)
@@ -193,11 +197,9 @@ class Screen:
         if kept <= 3e-5 * seen:
             return replace(proposal, gain=0.0, seen=seen, own=kept)
         steps = np.clip(self._best(proposal, own), -FARTHEST, FARTHEST)
+        if proposal.firm:
+            steps = np.array(proposal.steps)
         gain = self._gain(own, steps)
-        # half of the way to a preload that leaves a cable slack nothing is slack
-        as_is = np.array(proposal.steps)
-        if _slackens(proposal.candidate) and self._gain(own, as_is) > 0.0:
-            steps, gain = as_is, self._gain(own, as_is)
         if gain <= 0.0:  # keep a size to speak of
             return replace(proposal, gain=0.0, seen=seen, own=kept)
         z = proposal.resized(steps.tolist())
@@ -271,8 +273,3 @@ class Screen:
                 return best
             kept = np.delete(kept, int(np.argmin(found - low[kept])))
         return best
-
-
-def _slackens(candidate: Candidate) -> bool:
-    """Return whether a candidate is asked about where it leaves a cable slack."""
-    return any(p.search == 'slack' for p in candidate.parameters)

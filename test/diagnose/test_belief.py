@@ -12,6 +12,7 @@ from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
+from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -217,3 +218,15 @@ def test_who_makes_up_for_a_company_joins_it(three, members):
             return costs[members] - MAKES_UP * apart
 
     assert _grown(Costs(), (0, 1), {2, 3}, {2: 2.0, 3: 1.0}) == members
+
+
+def test_what_is_as_large_without_what_undoes_each_other_is_not_doubted_for_it(
+    found_of, monkeypatch
+):
+    """What they stand for is unknown, but it is not this."""
+    ready, found = found_of((COULOMB, {'torque': 0.1}), (GAIN, {'gain': 1.1}))
+    monkeypatch.setattr('tendon_ros.diagnose.belief.undoing', lambda *_: frozenset({1}))
+    firm = belief(ready, found)
+    assert [w.chance > NAMED for w in firm.weighed] == [True, False]
+    monkeypatch.setattr('tendon_ros.diagnose.belief.STEADY', 0.0)
+    assert belief(ready, found).weighed[0].chance < firm.weighed[0].chance
