@@ -23,6 +23,7 @@ PERIODS = 6  # times as far apart as neighbours that periods of what shakes are 
 #: period and no chance; and from which on less of it between nearer bins is a motion: noise with a
 #: memory, and be it a random walk, keeps a part that is one by the bins between
 SHAKES, MOVES = 0.5, 0.01
+FEW = 0.2  # of the samples that a period may be apart
 LOUD = 2.0  # noise powers that are no noise: what is left may shake
 
 
@@ -54,7 +55,7 @@ def heard(left: FloatArray, apart: int) -> float:
         bend = known[2 * lag :] - 2.0 * known[lag:-lag] + known[: -2 * lag]
         return float(np.median(np.abs(bend))) ** 2 if bend.size else math.inf
 
-    found = _quietest(power, apart)
+    found = _quietest(power, apart, known.size)
     return 1.4826 * math.sqrt(found / 6.0) if math.isfinite(found) else 0.0
 
 
@@ -72,17 +73,19 @@ def unshared(left: FloatArray, apart: int) -> float:
         return 0.5 * float(step @ step) / len(step) if step.size else math.inf
 
     # as much as noise is for certain no shaking, and all of it is soon said
-    return found if (found := power(apart)) <= LOUD else _quietest(power, apart)
+    return found if (found := power(apart)) <= LOUD else _quietest(power, apart, left.size)
 
 
-def _quietest(power: Callable[[int], float], apart: int) -> float:
+def _quietest(power: Callable[[int], float], apart: int, count: int) -> float:
     """
-    Return the power of neighbours that is noise.
+    Return the power of neighbours that is noise, of so many samples.
 
     Of those a period apart where what is left shakes, of the nearest where it swings more slowly.
     """
     usual = power(apart)
-    later = min(power(lag) for lag in range(apart + 1, PERIODS * apart + 1))
+    # a few samples far apart differ by chance as much or as little as they like
+    farthest = min(PERIODS * apart, int(FEW * count))
+    later = min((power(lag) for lag in range(apart + 1, farthest + 1)), default=math.inf)
     nearest = power(1)
     return min(
         usual,

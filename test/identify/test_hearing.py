@@ -51,3 +51,12 @@ def test_noise_with_a_memory_keeps_all_its_power():
     apart = neighbours(0.002, counted=True)
     assert heard(left, apart) == pytest.approx(np.std(left), rel=0.1)
     assert unshared(left / np.std(left), apart) == pytest.approx(1.0, rel=0.1)
+
+
+def test_a_few_samples_do_not_shake_by_chance():
+    # a push of a second at 50 Hz: nothing is a tenth of itself for lying near the ends
+    for seed in range(20):
+        left = np.cumsum(np.random.default_rng(seed).normal(size=60))
+        bend = left[4:] - 2.0 * left[2:-2] + left[:-4]
+        usual = 1.4826 * np.median(np.abs(bend)) / np.sqrt(6.0)
+        assert heard(left, 2) > 0.5 * usual
