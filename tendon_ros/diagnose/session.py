@@ -26,6 +26,7 @@ from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
+from tendon_ros.diagnose.intake.readings import as_read
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -95,6 +96,7 @@ def diagnose(
     intake = admitted(recordings, instrument)
     runs = intake.recordings
     instrument, counted = as_counted(runs, instrument)
+    instrument, noisy = as_read(runs, instrument)
     ready, instrument, held_on = as_set(prepared(runs, instrument, jobs), runs, instrument, jobs)
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
@@ -148,6 +150,7 @@ def diagnose(
         left_out=(
             *intake.left_out,
             *counted,
+            *noisy,
             *strong_words(runs, instrument),
             *said_of_torque(instrument),
             *held_on,
