@@ -30,7 +30,7 @@ def calibration_text(found: Calibration) -> str:
         if found.needed is not None
         else 'Less than all of the recording is not as good: a longer one may do better'
     )
-    lines += [f'left out: {text}' for text in found.left_out]
+    lines += [f'note: {text}' for text in found.left_out]
     return '\n'.join(lines).replace('\u00a0', ' ') + '\n'
 
 

@@ -100,7 +100,7 @@ def _data(diagnosis: Diagnosis, evidence: Evidence) -> str:
     shown = ', '.join(names[:4]) + (', …' if len(names) > 4 else '')
     text = f'{count(len(names), "recording")} ({shown}), {count(len(diagnosis.gap), "channel")}.'
     if diagnosis.left_out:
-        text += ' Some data was left out: see About this run.'
+        text += ' Notes on it: see About this run.'
     return text
 
 

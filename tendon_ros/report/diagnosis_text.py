@@ -56,7 +56,7 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     if diagnosis.beside:
         lines += _part('beside', [beside_words(diagnosis)])
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
-    lines += _part('note', [f'left out: {text}' for text in diagnosis.left_out[:3]])
+    lines += _part('note', list(diagnosis.left_out[:3]))
     # blanks that kept numbers and units on one line have done their work
     return '\n'.join(lines).replace('\u00a0', ' ') + '\n'
 

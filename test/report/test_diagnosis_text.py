@@ -123,7 +123,7 @@ def test_summary_tells_what_is_left_and_what_is_next(case):
     assert rest in said.replace('\n        ', ' ')
     assert 'next    move motor L freely' in said
     assert 'record\n          pulley/pulley_1/position' in said
-    assert 'left out: free: 0.4 s' in said
+    assert 'note    free: 0.4 s' in said
     assert 'something not named' not in summary(case('no_gap')[0])
 
 
