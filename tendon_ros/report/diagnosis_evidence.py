@@ -234,7 +234,7 @@ def _run(diagnosis: Diagnosis, evidence: Evidence) -> Section:
         ),
     ]
     if diagnosis.left_out:
-        blocks += [Prose('Left out:'), Listing(diagnosis.left_out)]
+        blocks += [Prose('Of the recordings:'), Listing(diagnosis.left_out)]
     return Section('About this run', tuple(blocks), 'run')
 
 
