@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.identify.segment import Segment
 from tendon_ros.identify.true_motion import true_motion
-from tendon_ros.identify.untold import as_held, as_reported
+from tendon_ros.identify.untold import as_held, as_reported, usual_part
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import Numbers
@@ -27,7 +27,6 @@ from tendon_ros.model.simulation import along, follow
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-USUAL = 0.5  # part of a motor's torques that no unknown limit cuts off
 #: [rad] a step; a hundredth of an encoder's count
 TOLERANCE = 4e-6
 #: the same where nothing that is measured notices, the roughest first
@@ -131,7 +130,8 @@ class Rollouts:
         :return: [N m]; 0 where it reported nothing.
         """
         reported = self._torques.get(motor, np.zeros(0))
-        return float(np.quantile(np.abs(gain * reported + bias), USUAL)) if reported.size else 0.0
+        part = usual_part(self.instrument, motor)
+        return float(np.quantile(np.abs(gain * reported + bias), part)) if reported.size else 0.0
 
     def predicted(
         self, uses: Sequence[Sequence[EffectUse]], asked: Sequence[bool] | None = None

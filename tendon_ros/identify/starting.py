@@ -17,7 +17,8 @@ from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.rollout import fineness, USUAL
+from tendon_ros.identify.rollout import fineness
+from tendon_ros.identify.untold import usual_part
 from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
@@ -143,19 +144,20 @@ class Starting:
     def _levels(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
         """Try limits between the largest torque that the motor reported and the usual one."""
         instrument = self._problem.rollouts.instrument
-        names = [m.name for m in instrument.motors if f'motor_{m.name}' == candidate.place]
+        [motor] = [m.name for m in instrument.motors if f'motor_{m.name}' == candidate.place]
         known = [
             np.abs(m.value[np.isfinite(m.value)])
             for s in self._problem.rollouts.segments
             for m in s.measured
-            if m.sensor.kind == 'motor_torque' and m.sensor.of in names
+            if m.sensor.kind == 'motor_torque' and m.sensor.of == motor
         ]
         torques = np.concatenate(known) if known else np.zeros(0)
         if not torques.any():
             return []
         [name] = [p.name for p in candidate.parameters if p.search == 'level']
         largest = 0.98 * float(torques.max())
-        least = min(max(float(np.quantile(torques, USUAL)), 0.1 * largest), 0.8 * largest)
+        usual = float(np.quantile(torques, usual_part(instrument, motor)))
+        least = min(max(usual, 0.1 * largest), 0.8 * largest)
         return [values | {name: float(v)} for v in np.geomspace(largest, least, LEVELS)]
 
     def _slack(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:

@@ -7,6 +7,7 @@ There the measured torque stands for the prediction, as far as friction or limit
 from __future__ import annotations
 
 from collections.abc import Callable
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,10 @@ from tendon_ros.model.rows import Rows
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+#: part of a motor's torques that no unknown limit cuts off; and where its torque constant is a
+#: guess, with which a limit sinks until it excuses as much as it may
+USUAL, USUAL_OF_A_GUESS = 0.2, 0.5
 
 
 def as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -> FloatArray:
@@ -98,3 +103,15 @@ def as_reported(
         given, _ = given_by(numbers, j, reported, least)
         found[row] = reported + (asked - given) / gain
     return found
+
+
+def usual_part(instrument: Instrument, motor: str) -> float:
+    """
+    Return the part of a motor's torques that no limit, which the file does not know, cuts off.
+
+    :param instrument: the network.
+    :param motor: its name.
+    :return: 0 to 1.
+    """
+    guessed = math.isinf(instrument.tolerances.get(f'motor_{motor}.torque_gain', 0.0))
+    return USUAL_OF_A_GUESS if guessed else USUAL

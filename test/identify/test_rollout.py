@@ -9,6 +9,7 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import loosest, ROUGHER
 from tendon_ros.identify.true_motion import true_motion
+from tendon_ros.identify.untold import usual_part
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.laws import modified
@@ -158,6 +159,13 @@ def test_a_limit_that_a_bias_passes_all_along_excuses_nothing(stopping, measured
         np.mean((value - problem.rollouts.predicted([own])[0][0]) ** 2) for own in ([], uses)
     )
     assert excused > 0.3 * without
+
+
+def test_a_limit_excuses_no_more_than_half_where_the_torque_constant_is_a_guess():
+    """A limit sinks with a guessed constant until it means nothing."""
+    known, guessed = load_instrument('single_body'), load_instrument('pendulum_arm')
+    assert usual_part(known, 'body') == 0.2
+    assert usual_part(guessed, 'arm') == 0.5
 
 
 def test_a_limit_that_sets_in_over_a_knee_is_none_that_sets_in_at_once(bench, measured_on):
