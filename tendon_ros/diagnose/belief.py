@@ -126,7 +126,7 @@ def _left_beside(final: Fit, rest: Fit, k: int) -> FloatArray:
     and without them is not what that is told by.
     """
     cause, sizes = final.model.causes[k], final.model.values(k)
-    if cause not in rest.model.causes:
+    if cause not in rest.model.causes or rest.cost <= final.cost:
         return rest.left
     alone = rest.model.values(rest.model.causes.index(cause))
     steady = all(
