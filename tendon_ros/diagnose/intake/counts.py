@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.quantity import written
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.intake.restated import restated
 from tendon_ros.diagnose.intake.units import factor_name
 from tendon_ros.model.instrument import Instrument, Sensor
 
@@ -37,21 +38,20 @@ def as_counted(
     :param instrument: its file.
     :return: the instrument, and a sentence on each encoder that counts more coarsely.
     """
-    sensors, said = [], []
-    for sensor in instrument.sensors:
+
+    def coarser(sensor: Sensor) -> tuple[Sensor, str] | None:
         step = _step_of(sensor, recordings)
-        if step > COARSER * sensor.resolution:
-            unit = factor_name(step / sensor.resolution, sensor.kind)
-            said.append(
-                f'{sensor.name}: its readings come in steps of {written(step, "rad")}, more '
-                f'coarsely than the {written(sensor.resolution, "rad")} of the instrument file'
-                f'{f", as if {unit}" if unit else ""}; what the recordings say is taken (log more '
-                'digits, or correct the encoder or the unit)'
-            )
-            sensors.append(replace(sensor, resolution=step))
-        else:
-            sensors.append(sensor)
-    return replace(instrument, sensors=tuple(sensors)), tuple(said)
+        if not step > COARSER * sensor.resolution:
+            return None
+        unit = factor_name(step / sensor.resolution, sensor.kind)
+        return replace(sensor, resolution=step), (
+            f'{sensor.name}: its readings come in steps of {written(step, "rad")}, more '
+            f'coarsely than the {written(sensor.resolution, "rad")} of the instrument file'
+            f'{f", as if {unit}" if unit else ""}; what the recordings say is taken (log more '
+            'digits, or correct the encoder or the unit)'
+        )
+
+    return restated(instrument, coarser)
 
 
 def _step_of(sensor: Sensor, recordings: Iterable[Recording]) -> float:

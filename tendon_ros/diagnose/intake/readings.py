@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.diagnose.intake.restated import restated
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.model.instrument import Instrument, Sensor
 
@@ -44,20 +45,19 @@ def as_read(
     :return: the instrument, and a sentence on each encoder that is far noisier than the file says.
     """
     driving = set(encoder_channels(instrument))
-    sensors, said = [], []
-    for sensor in instrument.sensors:
+
+    def noisier(sensor: Sensor) -> tuple[Sensor, str] | None:
         noise = _noise_of(sensor, recordings) if sensor.channel in driving else 0.0
         known = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-        if noise > NOISIER * known > 0.0:
-            said.append(
-                f'{sensor.name}: in motion its readings scatter by {1e3 * noise:.2g} mrad, '
-                f'{noise / known:.0f} times what the instrument file says; that is taken for its '
-                'noise (log the time at which each was read, or state its noise in the file)'
-            )
-            sensors.append(replace(sensor, noise=noise))
-        else:
-            sensors.append(sensor)
-    return replace(instrument, sensors=tuple(sensors)), tuple(said)
+        if not noise > NOISIER * known > 0.0:
+            return None
+        return replace(sensor, noise=noise), (
+            f'{sensor.name}: in motion its readings scatter by {1e3 * noise:.2g} mrad, '
+            f'{noise / known:.0f} times what the instrument file says; that is taken for its '
+            'noise (log the time at which each was read, or state its noise in the file)'
+        )
+
+    return restated(instrument, noisier)
 
 
 def _noise_of(sensor: Sensor, recordings: Iterable[Recording]) -> float:
