@@ -101,6 +101,7 @@ def calibrate(
     plain = as_recorded(plain, {name for r in recordings for name in r.channels})
     report('looking at the recordings', 0.0)
     intake = admitted(recordings, plain)
+    plain = intake.instrument
     ready = prepared(intake.recordings, plain)
     start = _start(
         ready.problem,

@@ -24,9 +24,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
-from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.limits import strong_words
-from tendon_ros.diagnose.intake.readings import as_read
 from tendon_ros.diagnose.judge import left_over, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -94,9 +92,7 @@ def diagnose(
     given = instrument
     instrument = as_recorded(given, {name for r in recordings for name in r.channels})
     intake = admitted(recordings, instrument)
-    runs = intake.recordings
-    instrument, counted = as_counted(runs, instrument)
-    instrument, noisy = as_read(runs, instrument)
+    runs, instrument = intake.recordings, intake.instrument
     ready, instrument, held_on = as_set(prepared(runs, instrument, jobs), runs, instrument, jobs)
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
@@ -149,8 +145,6 @@ def diagnose(
         next_experiment=ahead,
         left_out=(
             *intake.left_out,
-            *counted,
-            *noisy,
             *strong_words(runs, instrument),
             *said_of_torque(instrument),
             *held_on,

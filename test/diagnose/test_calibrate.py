@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.calibrate import calibrate
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
@@ -55,6 +57,20 @@ def test_the_text_says_all_of_it(found):
     assert 'differs here    Encoder 1 gain: gain 0.9' in text
     assert 'the file: 1.03' in text
     assert 'are as good as all of it' in text
+
+
+def test_a_log_that_was_rounded_is_no_misfit(bench, measured_on):
+    run = measured_on(bench)
+    own = run['actuator/pulley_M/position']
+    coarse = Channel(own.name, own.time, np.round(own.value / 2e-3) * 2e-3)
+    rounded = replace(run, channels={**run.channels, own.name: coarse})
+    calibrated = calibrate([rounded], bench)
+    assert any('come in steps of 0.002 rad' in said for said in calibrated.left_out)
+    assert calibrated.misfit[1] < 1.3
+    # the encoder is what the file says: the log was rounded
+    assert [s.resolution for s in calibrated.instrument.sensors] == [
+        s.resolution for s in bench.sensors
+    ]
 
 
 def test_a_file_with_nothing_to_fit_is_refused(bench, measured_on):

@@ -15,10 +15,12 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.intake.clipping import unclipped
 from tendon_ros.diagnose.intake.clock import cut_at_breaks
+from tendon_ros.diagnose.intake.counts import as_counted
 from tendon_ros.diagnose.intake.fitting import fitting
 from tendon_ros.diagnose.intake.limits import within_limits
 from tendon_ros.diagnose.intake.motion import moving
 from tendon_ros.diagnose.intake.plausible import plausible
+from tendon_ros.diagnose.intake.readings import as_read
 from tendon_ros.diagnose.intake.setpoints import followed
 from tendon_ros.diagnose.intake.sorting import distinct, of_one_rig
 from tendon_ros.diagnose.intake.stamps import as_sampled
@@ -47,11 +49,13 @@ class Intake:
 
     ``recordings`` have unique names, every motor's position, and something to compare; their
     channels keep their own stamps, unless those scatter where the motion does not, and lack the
-    samples that cannot be compared. ``left_out`` holds one sentence for each thing that was left
-    out, with its mend.
+    samples that cannot be compared. ``instrument`` has encoders that count and scatter as they do
+    in these. ``left_out`` holds one sentence for each thing that was left out or taken otherwise,
+    with its mend.
     """
 
     recordings: tuple[Recording, ...]
+    instrument: Instrument
     left_out: tuple[str, ...]
 
 
@@ -61,7 +65,7 @@ def admitted(recordings: Sequence[Recording], instrument: Instrument) -> Intake:
 
     :param recordings: as read or imported; they are not changed.
     :param instrument: what they are said to be of.
-    :return: what is left, and sentences on what is not.
+    :return: what is left, the instrument as it shows there, and sentences on what is not.
     :raises RecordingError: where no diagnosis is possible: one line with place, fault and mend.
     """
     if not recordings:
@@ -74,7 +78,10 @@ def admitted(recordings: Sequence[Recording], instrument: Instrument) -> Intake:
         if not present:
             raise RecordingError(_as_error(sentences, before, left_out))
         left_out += sentences
-    return Intake(present, tuple(dict.fromkeys(left_out)))
+    for restated in (as_counted, as_read):
+        instrument, sentences = restated(present, instrument)
+        left_out += sentences
+    return Intake(present, instrument, tuple(dict.fromkeys(left_out)))
 
 
 def _as_error(sentences: Sequence[str], recordings: int, left_out: Sequence[str]) -> str:
