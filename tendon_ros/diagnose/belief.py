@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import is_constant, spent
+from tendon_ros.diagnose.bent import excuses, is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
@@ -24,7 +24,7 @@ from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
@@ -84,7 +84,9 @@ def belief(ready: Prepared, found: Found) -> Belief:
         _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)
         for k in range(len(causes))
     )
-    able = [k for k in range(len(causes)) if k not in undone and not _open(found, k)]
+    able = [
+        k for k in range(len(causes)) if k not in undone and not _open(ready.problem, found, k)
+    ]
     together = companies(ready, found, weighed, able, rest.left)
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
@@ -150,7 +152,7 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     equal = tuple(r.candidate for r in equals(ready.problem, found, k))
     # beside a strong effect many differ by less than its law may be wrong by
     as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
-    vague = len({cause.effect} | as_good) > ALIKE or _open(found, k)
+    vague = len({cause.effect} | as_good) > ALIKE or _open(ready.problem, found, k)
     vague |= is_constant(ready.problem, cause, found.final.model.values(k))
     return Weighed(
         cause=cause,
@@ -161,7 +163,8 @@ def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bo
     )
 
 
-def _open(found: Found, k: int) -> bool:
+def _open(problem: Problem, found: Found, k: int) -> bool:
     """Return whether nobody was tried in its place, or no value of it tells what is there."""
-    cause = found.final.model.causes[k]
-    return cause in found.unmet or spent(cause, found.final.model.values(k))
+    model = found.final.model
+    cause = model.causes[k]
+    return cause in found.unmet or spent(cause, model.values(k)) or excuses(problem, model, k)

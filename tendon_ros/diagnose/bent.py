@@ -38,6 +38,8 @@ YIELDS = 0.25
 TURN, BEYOND = 2.0 * math.pi, 2.0
 #: times a factor may still go before its bound, where it is as good as there
 SPENT = 1.5
+#: knee of a torque limit that is as wide as it may be
+WIDE = 0.59
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -101,14 +103,17 @@ def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, flo
 
 def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
-    Return whether a factor is at its bound: no value that it could have tells what is there.
+    Return whether a parameter is at its bound: no value that it could have tells what is there.
 
-    A play that rattles is told as a coupling fifty times too soft, and bodies as light as nothing.
+    A play that rattles is told as a coupling fifty times too soft, and bodies as light as nothing;
+    a supply that falls under load as a limit that sets in long before anything is cut off.
 
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether.
     """
+    if candidate.effect == 'torque_saturation' and values['knee'] > WIDE:
+        return True
     return any(
         p.low > 0.0 and not p.low * SPENT < values[p.name] < p.high / SPENT
         for p in candidate.parameters
@@ -140,7 +145,9 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     """
     Return whether a cause is a torque limit that nearly all torques pass.
 
-    A fit lowers it to have ever more excused, until it means nothing.
+    A fit lowers it to have ever more excused, until it means nothing. None may come in like that;
+    one that is there may sink while others join, since it may stand for a motor that gives way
+    otherwise than by any limit. It is no cause then, but what joins would not be seen without it.
 
     :param problem: the data.
     :param model: causes.
@@ -161,15 +168,15 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     return model.values(k)['limit'] < usual
 
 
-def anything_excused(problem: Problem, model: Model) -> bool:
+def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
     """
-    Return whether any cause of a model is such a limit.
+    Return which causes of a model are such limits.
 
     :param problem: the data.
     :param model: causes.
-    :return: whether.
+    :return: those.
     """
-    return any(excuses(problem, model, k) for k in range(len(model.causes)))
+    return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
 
 
 def _turned(problem: Problem, place: str) -> float:

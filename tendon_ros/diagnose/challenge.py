@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import math
 
 from tendon_ros.diagnose.begun import Begun
-from tendon_ros.diagnose.bent import anything_excused, degenerate
+from tendon_ros.diagnose.bent import degenerate, excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.one_body import divide, merge
@@ -29,6 +29,7 @@ from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.valleys import nudged
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen, Seen
 from tendon_ros.identify.worths import worths
@@ -62,7 +63,7 @@ class Challenge:
         :param found: its last state, rivals and states without a cause are replaced.
         :param brief: whether only rivals matter that are far better.
         """
-        found.states[-1] = self._steps.renamed(found.final)
+        found.states[-1] = self._steps.renamed(found.final, found.final.model.causes)
         # that two are one, or one is two, is a matter of words where no law is quite right
         if not brief and not self._steps.patience.over:
             merged, split = merge(self._steps, found), divide(self._steps, found)
@@ -108,7 +109,7 @@ class Challenge:
                 c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()
             }
             changed = True
-            found.states[-1] = self._steps.pruned(found.start, better)
+            found.states[-1] = self._steps.pruned(found.start, better, state.model.causes)
             if creeps:
                 self._converged(found)
             # who stood only just did so beside the one that has gone
@@ -167,15 +168,19 @@ class Challenge:
             begun = self._begun.beside_the_others(found.final, cause, without, rivals)
             rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = sharpened(self._steps, found.final, without, rivals, BRIEFLY if brief else CLOSE)
-        return [r for r in rivals if self._more_than_a_part(r)]
+        return [r for r in rivals if self._more_than_a_part(r, found.final)]
 
-    def _more_than_a_part(self, rival: Rival) -> bool:
-        """Return whether a rival does anything that a simpler effect does not."""
+    def _more_than_a_part(self, rival: Rival, state: Fit) -> bool:
+        """Return whether a rival does anything that a simpler effect, or an excuse, does not."""
         model = rival.fit.model
         bent = degenerate(self._problem, rival.candidate, model.values(-1))
-        # beside it another one may have become an excuse
-        excuse = anything_excused(self._problem, model)
-        return not bent and not excuse and plain(self._problem, model, -1) is None
+        return (
+            not bent and self._no_excuse(model, state) and plain(self._problem, model, -1) is None
+        )
+
+    def _no_excuse(self, model: Model, state: Fit) -> bool:
+        """Return whether nothing has become an excuse beside a rival that was none before."""
+        return excused(self._problem, model) <= excused(self._problem, state.model)
 
     def _without(self, found: Found, k: int) -> Fit:
         """
@@ -223,7 +228,7 @@ class Challenge:
         for rival in rivals[:2]:
             if wins(rival.candidate, rival.fit):
                 trial = self._steps.settled(rival.fit.model, self._problem.slopes(state))
-                if wins(rival.candidate, trial):
+                if wins(rival.candidate, trial) and self._no_excuse(trial.model, state):
                     return trial
         # where no law is quite right, what is worth least still makes up for what others get wrong
         close = [] if brief else close_ones(self._problem, state, without, rivals)
@@ -231,6 +236,6 @@ class Challenge:
             smaller = relieved(self._problem, rival.fit)
             if smaller is not None and as_good(self._problem, smaller, state):
                 trial = self._steps.settled(smaller.model, self._problem.slopes(smaller))
-                if as_good(self._problem, trial, state):
+                if as_good(self._problem, trial, state) and self._no_excuse(trial.model, state):
                     return trial
         return None

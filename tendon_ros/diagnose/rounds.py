@@ -67,14 +67,20 @@ class Round:
         fit = self.problem.fitted(model, self.problem.slopes(state), rounds=12, accuracy=1e-2)
         model = self._steps.parted(fit)
         fit = self._steps.pruned(
-            self._start, self._steps.settled(model, self.problem.slopes(state))
+            self._start,
+            self._steps.settled(model, self.problem.slopes(state)),
+            state.model.causes,
         )
         if not state.model.causes:
             fit = self._simplest(before, state, proposals, fit)
         elif not self.believes(before, fit):
             # first order hardly tells the last of many: see which one fits
             alone = self.alone(state, proposals)
-            fit = fit if alone is None else self._steps.pruned(self._start, alone)
+            fit = (
+                fit
+                if alone is None
+                else self._steps.pruned(self._start, alone, state.model.causes)
+            )
         return fit if self.believes(before, fit) else None
 
     def believes(self, before: Fit, fit: Fit) -> bool:

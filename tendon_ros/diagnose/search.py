@@ -139,7 +139,7 @@ class Search:
         if self.problem.by_misfit:  # it is what was needed of all that is usual
             state = without_idle(self._steps, state)
         else:
-            state = self._steps.pruned(start, state)
+            state = self._steps.pruned(start, state, self._begun.causes)
         if usual.believes(start, state):
             yield state
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import anything_excused, at_once, biased, degenerate, excuses
+from tendon_ros.diagnose.bent import at_once, biased, degenerate, excused, excuses
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
@@ -157,7 +157,7 @@ class Steps:
             for r in self.pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
-            and not anything_excused(self.problem, r.fit.model)
+            and excused(self.problem, r.fit.model) <= set(state.model.causes)
         ]
         return sorted(found, key=judged_cost)
 
@@ -174,15 +174,16 @@ class Steps:
             return fit
         return self.problem.fitted(fit.model, rounds=6, accuracy=1e-3)
 
-    def pruned(self, start: Fit, state: Fit) -> Fit:
+    def pruned(self, start: Fit, state: Fit, stood: Collection[Candidate] = ()) -> Fit:
         """
         Drop causes that are none, and those that others have made superfluous.
 
         :param start: without any cause.
         :param state: with all of them.
+        :param stood: those that were there before.
         :return: with those that are worth having.
         """
-        state = self.renamed(state)
+        state = self.renamed(state, stood)
         model = self.parted(state)
         if model is not state.model:
             state = self.settled(model, self.problem.slopes(state))
@@ -209,23 +210,24 @@ class Steps:
                     state, rough = smaller, True
             elif rough:
                 # carefully only once several have gone; what then is doubtful is asked anew
-                state, rough = self.renamed(self.settled(state.model)), False
+                state, rough = self.renamed(self.settled(state.model), stood), False
                 checked.clear()
             else:
                 return state
 
-    def renamed(self, state: Fit) -> Fit:
+    def renamed(self, state: Fit, stood: Collection[Candidate] = ()) -> Fit:
         """
         Give causes the names that they deserve, join what is one, and drop what is none.
 
         :param state: with causes that a fit may have bent.
+        :param stood: those that were there before: they may sink to excuses.
         :return: the same where nothing has another name, else fitted again.
         """
         model = state.model
         taken = {(c.effect, c.place) for c in model.causes}
         for k in reversed(range(len(model.causes))):
             cause, values = model.causes[k], model.values(k)
-            if excuses(self.problem, model, k):
+            if cause not in stood and excuses(self.problem, model, k):
                 model = model.without(k)
                 continue
             other = simpler(cause, values) or plain(self.problem, model, k)

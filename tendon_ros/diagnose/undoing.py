@@ -57,7 +57,9 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
     if len(causes) < 2:
         return frozenset()
     changes = np.array([change(problem, state, k) for k in range(len(causes))])
-    changes = np.where(np.isfinite(changes), changes, 0.0)
+    # a guess may scale all torques at once: friction, of which a gain makes more or less, and a
+    # motor that gives way are not opposed for that
+    changes = _own(problem, state, np.where(np.isfinite(changes), changes, 0.0))
     channels = problem.channels().values()
     happened = np.array([bool(cause.instants) for cause in causes])
     found: frozenset[int] = frozenset()
@@ -101,13 +103,20 @@ def its_own(problem: Problem, state: Fit, k: int) -> float:
     :param k: which cause.
     :return: 0 to 1; 1 where nothing is guessed.
     """
+    whole = change(problem, state, k)
+    power = float(whole @ whole)
+    if not 0.0 < power < math.inf:
+        return 1.0
+    [own] = _own(problem, state, whole[None])
+    return math.sqrt(float(own @ own) / power)
+
+
+def _own(problem: Problem, state: Fit, changes: FloatArray) -> FloatArray:
+    """Return what of several changes, shape (changes, samples), guessed numbers cannot do."""
     columns = _guessed(problem, state)
     slope = state.slope[:, columns]
     normal = slope.T @ slope + np.diag(problem.prior(state.model)[columns] + 1e-9)
-    whole = change(problem, state, k)
-    own = whole - slope @ np.linalg.solve(normal, slope.T @ whole)
-    power = float(whole @ whole)
-    return math.sqrt(float(own @ own) / power) if 0.0 < power < math.inf else 1.0
+    return changes - np.linalg.solve(normal, slope.T @ changes.T).T @ slope.T
 
 
 def _guessed(problem: Problem, state: Fit) -> NDArray[np.intp]:

@@ -95,9 +95,34 @@ def test_what_happens_at_a_time_undoes_nothing_that_lasts(monkeypatch, second, w
     causes = (Candidate('encoder_offset', 'encoder_L'), second)
     changes = [WAVE, 0.2 * OTHER - WAVE]
     monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
-    state = SimpleNamespace(model=SimpleNamespace(causes=causes), left=WAVE)
-    problem = SimpleNamespace(channels=dict, structured=lambda left: float(np.mean(left**2)))
+    assert undoing(*made_up(causes)) == which
+
+
+@pytest.mark.parametrize(('guessed', 'which'), [(False, {0, 1}), (True, set())])
+def test_what_a_guess_does_as_well_is_no_opposition(monkeypatch, guessed, which):
+    # friction asks for more torque and a limit for less; the unknown torque constant does both
+    causes = (Candidate('coulomb_friction', 'pulley_M'), Candidate('torque_bias', 'motor_M'))
+    changes = [WAVE + 0.3 * OTHER, 0.1 * OTHER - WAVE]
+    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    problem, state = made_up(causes)
+    problem.tolerances = (SimpleNamespace(guessed=guessed),)
+    problem.prior = lambda _model: np.zeros(1)
+    state.slope = WAVE[:, None]
     assert undoing(problem, state) == which
+
+
+def made_up(causes):
+    """Return a problem without tolerances, and a state with some causes."""
+    state = SimpleNamespace(
+        model=SimpleNamespace(causes=causes), left=WAVE, slope=np.zeros((len(WAVE), 0))
+    )
+    problem = SimpleNamespace(
+        channels=dict,
+        structured=lambda left: float(np.mean(left**2)),
+        tolerances=(),
+        prior=lambda _model: np.zeros(0),
+    )
+    return problem, state
 
 
 @pytest.fixture(scope='module')

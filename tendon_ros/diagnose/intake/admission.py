@@ -79,8 +79,8 @@ def admitted(recordings: Sequence[Recording], instrument: Instrument) -> Intake:
             raise RecordingError(_as_error(sentences, before, left_out))
         left_out += sentences
     for restated in (as_counted, as_read):
-        instrument, sentences = restated(present, instrument)
-        left_out += sentences
+        instrument, said = restated(present, instrument)
+        left_out += said
     return Intake(present, instrument, tuple(dict.fromkeys(left_out)))
 
 
