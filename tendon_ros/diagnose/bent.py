@@ -17,6 +17,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
+from tendon_ros.identify.untold import guesses_torque
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.laws import modified
 
@@ -53,7 +54,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
         a delay that a controller's hold or a logger makes, a ripple of which not half a wave was
-        seen, friction that never yields, a number of the file within its tolerance.
+        seen, friction that never yields, a limit without an end where the torque is known, a
+        number of the file within its tolerance.
     """
     for t in problem.tolerances:
         if t.is_moved_by(candidate):
@@ -63,6 +65,11 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     held = HOLDS * problem.rollouts.instrument.control_period
     polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
     if candidate.effect == 'sensor_delay' and values['time'] < max(held, polled):
+        return True
+    # how much a motor gives of what it reports is known, or is another guess
+    if _is_wide(candidate, values) and not guesses_torque(
+        problem.rollouts.instrument, candidate.place.removeprefix('motor_')
+    ):
         return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them
@@ -112,13 +119,16 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
     :param values: of its parameters.
     :return: whether.
     """
-    if candidate.effect == 'torque_saturation' and values['knee'] > WIDE:
-        return True
-    return any(
+    return _is_wide(candidate, values) or any(
         p.low > 0.0 and not p.low * SPENT < values[p.name] < p.high / SPENT
         for p in candidate.parameters
         if p.neutral == 1.0 and not p.is_shape
     )
+
+
+def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """Return whether a limit sets in long before anything is cut off."""
+    return candidate.effect == 'torque_saturation' and values['knee'] > WIDE
 
 
 def biased(

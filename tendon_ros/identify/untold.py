@@ -113,5 +113,15 @@ def usual_part(instrument: Instrument, motor: str) -> float:
     :param motor: its name.
     :return: 0 to 1.
     """
-    guessed = math.isinf(instrument.tolerances.get(f'motor_{motor}.torque_gain', 0.0))
-    return USUAL_OF_A_GUESS if guessed else USUAL
+    return USUAL_OF_A_GUESS if guesses_torque(instrument, motor) else USUAL
+
+
+def guesses_torque(instrument: Instrument, motor: str) -> bool:
+    """
+    Return whether the file only guesses a motor's torque constant.
+
+    :param instrument: the network.
+    :param motor: its name.
+    :return: whether.
+    """
+    return math.isinf(instrument.tolerances.get(f'motor_{motor}.torque_gain', 0.0))
