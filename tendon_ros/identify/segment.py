@@ -28,6 +28,7 @@ BoolArray = NDArray[np.bool_]
 
 #: [s] of recordings that fits see where there are many more: whole others judge them
 FITTED = 180.0
+ALL = 1e-6  # part of a bin that the last one may seem to lack, by the last digits of stamps
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
 OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
@@ -75,12 +76,13 @@ class Segment:
     """
     One recording on uniform bins.
 
-    ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from the
-    recording's start. ``motion`` drives ``prescribed`` pulleys. ``contacts`` are those that were
-    there. ``pose`` is where the other pulleys began [rad]. ``pushed`` are pulleys on which a
-    known torque acts, of a motor without encoder or of a measured load; torques follow the motions
-    in ``motion``. ``still``: of each prescribed pulley, shape (bins,), where its motion cannot be
-    told from rest. ``sampling`` [s] is the time between samples of the slowest channel.
+    ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from
+    ``start``, half a sample before the first reading. ``motion`` drives ``prescribed`` pulleys.
+    ``contacts`` are those that were there. ``pose`` is where the other pulleys began [rad].
+    ``pushed`` are pulleys on which a known torque acts, of a motor without encoder or of a
+    measured load; torques follow the motions in ``motion``. ``still``: of each prescribed pulley,
+    shape (bins,), where its motion cannot be told from rest. ``sampling`` [s] is the time between
+    samples of the slowest channel.
     """
 
     name: str
@@ -145,9 +147,14 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     known = [d.sensor.channel for d in driving]
     start = max(float(recording[name].time[0]) for name in known)
     end = min(float(recording[name].time[-1]) for name in known)
+    # readings in the middle of what they stand for: half a sample between a torque and the motion
+    # that asks for it is a sixth of what shakes a hundred times a second
     if by_seldom_torque(recording, driving):
-        start -= 0.5 * period  # each reading in the middle of a bin
-    bins = int((end - start) / period)
+        start -= 0.5 * period
+    else:
+        half = 0.5 * min(recording[name].sampling for name in known)
+        start, end = start - half, end + half
+    bins = int((end - start) / period + ALL)
     time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
     rows = [
         torque_of(recording[d.sensor.channel], start, period, bins, instrument.control_period)
@@ -225,8 +232,10 @@ def _motion(
 ) -> FloatArray:
     """Return the smoothed motion at the middles of the bins."""
     sampling = channel.sampling
-    angle = motion_of(channel, sensor, start, sampling, round(bins * period / sampling) + 1)
-    middles = period * (np.arange(bins) + 0.5)
+    first = float(channel.time[np.searchsorted(channel.time, start)])
+    samples = round((start + bins * period - first) / sampling) + 1
+    angle = motion_of(channel, sensor, first, sampling, samples)
+    middles = start - first + period * (np.arange(bins) + 0.5)
     found: FloatArray = np.interp(middles, sampling * np.arange(len(angle)), angle)
     return found
 

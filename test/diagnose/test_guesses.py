@@ -88,7 +88,7 @@ def test_a_last_state_is_fitted_to_its_end(problem):
     Challenge(Steps(problem, [COULOMB], 1, lambda *_: None), {}).of(found)
     end = problem.fitted(rough.model, rounds=60, accuracy=1e-5)
     assert found.final.cost < 0.99 * rough.cost
-    assert found.final.cost < 1.01 * end.cost
+    assert found.final.cost < 1.03 * end.cost
     assert found.without[0].cost >= found.final.cost
 
 
