@@ -96,7 +96,7 @@ class Challenge:
             rivals = self._challengers(found, cause, without, brief)
             better = None
             if replaced < REPLACED:
-                better = self._better(found, cause, without, rivals, brief)
+                better = self._taken(found, self._better(found, cause, without, rivals, brief))
             near = halfway(state, without, rivals)
             if better is None:
                 stood[cause] = without, rivals
@@ -109,7 +109,7 @@ class Challenge:
                 c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()
             }
             changed = True
-            found.states[-1] = self._steps.pruned(found.start, better, state.model.causes)
+            found.states[-1] = better
             if creeps:
                 self._converged(found)
             # who stood only just did so beside the one that has gone
@@ -177,6 +177,20 @@ class Challenge:
         return (
             not bent and self._no_excuse(model, state) and plain(self._problem, model, -1) is None
         )
+
+    def _taken(self, found: Found, better: Fit | None) -> Fit | None:
+        """
+        Return a fit with another candidate in the place of a cause, of causes worth having only.
+
+        None where that one is none, and is missed: friction of a motor that stands for most of the
+        time, for one, may fit better by what it merely holds.
+        """
+        if better is None:
+            return None
+        state = found.final
+        kept = self._steps.pruned(found.start, better, state.model.causes)
+        stays = set(kept.model.causes) - set(state.model.causes)
+        return kept if stays or as_good(self._problem, kept, state) else None
 
     def _no_excuse(self, model: Model, state: Fit) -> bool:
         """Return whether nothing has become an excuse beside a rival that was none before."""

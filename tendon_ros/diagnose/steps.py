@@ -210,7 +210,8 @@ class Steps:
                     state, rough = smaller, True
             elif rough:
                 # carefully only once several have gone; what then is doubtful is asked anew
-                state, rough = self.renamed(self.settled(state.model), stood), False
+                # those that are left came in as causes, and may sink now that others have gone
+                state, rough = self.renamed(self.settled(state.model), state.model.causes), False
                 checked.clear()
             else:
                 return state
