@@ -228,7 +228,9 @@ class Steps:
         taken = {(c.effect, c.place) for c in model.causes}
         for k in reversed(range(len(model.causes))):
             cause, values = model.causes[k], model.values(k)
-            if cause not in stood and excuses(self.problem, model, k):
+            # who sinks is kept for those beside it
+            kept = cause in stood and len(model.causes) > 1
+            if not kept and excuses(self.problem, model, k):
                 model = model.without(k)
                 continue
             other = simpler(cause, values) or plain(self.problem, model, k)
