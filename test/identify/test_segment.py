@@ -76,7 +76,7 @@ def test_stamps_that_are_not_in_the_middle_are_corrected(body):
     # the torque comes every 8 ms, always late in its bin
     segment, torque = binned(body, ramps(time, np.arange(0.0071, 3.99, 0.008)))
     middle = segment.start + segment.time
-    inner = np.isfinite(torque.value) & (middle > 0.01) & (middle < 3.97)
+    inner = np.isfinite(torque.value) & (middle > 0.02) & (middle < 3.97)
     assert torque.value[inner] == pytest.approx(0.1 * middle[inner], abs=1e-6)
 
 
