@@ -12,6 +12,7 @@ from tendon_ros.diagnose.bent import (
     excused,
     excuses,
     is_constant,
+    spent,
 )
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
@@ -37,10 +38,24 @@ from tendon_ros.model.instrument_file import load_instrument
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 20.0}, True),
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 2.0}, False),
         ('joint_spring', 'pulley_3', {'stiffness': 0.01, 'rest': 20.0}, False),
+        # a limit that never cuts anything off is none where the torque is known
+        ('torque_saturation', 'motor_M', {'limit': 1.0, 'knee': 0.6}, True),
+        ('torque_saturation', 'motor_M', {'limit': 1.0, 'knee': 0.4}, False),
     ],
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
+    axis = load_instrument('driven_axis')
+    problem = prepared([measured_on(axis, settings=(('duration', '6 s'),))], axis).problem
+    limit = Candidate('torque_saturation', 'motor_axis')
+    values = {'limit': 1.0, 'knee': 0.6}
+    assert not degenerate(problem, limit, values)
+    # but that is no limit
+    assert spent(limit, values)
+    assert not spent(limit, {'limit': 1.0, 'knee': 0.4})
 
 
 def test_a_constant_torque_is_a_bias_of_the_motor_and_elsewhere_nothing_that_has_a_name(

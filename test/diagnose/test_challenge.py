@@ -125,3 +125,19 @@ def test_friction_that_differs_by_direction_is_told_from_a_bias(bench, measured_
     steps = Steps(problem, [friction, wrong, BIASED], 1, lambda *_: None)
     Challenge(steps, {}).of(found)
     assert set(found.final.model.causes) == causes
+
+
+def test_who_is_dropped_at_once_has_not_taken_the_place(bench, measured_on, monkeypatch):
+    run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.05}))
+    problem = prepared([run], bench).problem
+    start = problem.fitted(problem.empty)
+    state = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
+    found = Found(states=[start, state])
+    steps = Steps(problem, [COULOMB, WRONG], 1, lambda *_: None)
+    challenge = Challenge(steps, {})
+    better = problem.fitted(problem.empty.joined(WRONG, {'damping': 0.1}))
+    monkeypatch.setattr(challenge, '_better', lambda *_: better)
+    monkeypatch.setattr(steps, 'pruned', lambda *_: start)
+    challenge.of(found)
+    assert found.final.model.causes == (COULOMB,)
+    assert found.final.cost < 1.01 * state.cost

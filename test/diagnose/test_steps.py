@@ -12,6 +12,7 @@ from tendon_ros.identify.screening import Screen
 
 CREEP = Candidate('cable_creep', 'cable_12')
 SOFTER = Candidate('cable_stiffness', 'cable_12')
+FRICTION = ('coulomb_friction', 'pulley_M')
 
 
 @pytest.fixture(scope='module')
@@ -53,3 +54,15 @@ def test_a_brief_look_fits_few_and_the_right_one_among_them(soft, bench):
     brief = steps.fitted(start, proposals, 0.0, brief=True)
     assert len(brief) <= BRIEF < len(steps.fitted(start, proposals, 0.0))
     assert SOFTER in [rival.candidate for rival in brief]
+
+
+def test_a_limit_that_sinks_is_kept_for_those_beside_it(sound_problem):
+    limit, friction = Candidate('torque_saturation', 'motor_M'), Candidate(*FRICTION)
+    sunk = sound_problem.empty.joined(limit, {'limit': 0.005, 'knee': 0.01})
+    beside = sunk.joined(friction, {'torque': 0.05})
+    steps = Steps(sound_problem, [limit, friction], 1, lambda *_: None)
+    alone, both = (sound_problem.fitted(model, rounds=0) for model in (sunk, beside))
+    assert steps.renamed(alone, [limit]).model.causes == ()
+    assert steps.renamed(both, [limit]) is both
+    # but none comes in like that
+    assert steps.renamed(both).model.causes == (friction,)
