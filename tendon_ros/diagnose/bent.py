@@ -28,9 +28,9 @@ HOLDS = 0.75
 POLLED = 0.5
 #: waves of a ripple that a motor has to pass
 SEEN = 0.5
-#: and how many where a turn has fewer than this, as hardly any motor: what comes once is any
-#: torque that follows the angle
-AGAIN, FEW = 2.0, 4.0
+#: and how many where a turn has fewer than this, as hardly any motor (three slots and two poles
+#: have six): what comes once is any torque that follows the angle
+AGAIN, FEW = 2.0, 6.0
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring
 YIELDS = 0.25
