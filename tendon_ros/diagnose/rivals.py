@@ -20,6 +20,8 @@ LEAVES = 0.05
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 BETTER = 0.99  # part of the cost that what is no simpler must leave
 CREEPING = 20  # rounds at most in which a fit comes to its end
+#: a weight that hangs is a spring of which far angles tell it
+LEAD_BACK = {'gravity', 'joint_spring'}
 #: of those that are worth least beside a rival, how many may have stood for it
 SUSPECTS = 2
 
@@ -39,14 +41,15 @@ def halfway(state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Candidate
 
 def alike(one: Candidate, two: Candidate) -> bool:
     """
-    Return whether two candidates are different dry frictions of one pulley.
+    Return whether two candidates are different dry frictions of one pulley, or both lead it back.
 
     :param one: a candidate.
     :param two: another.
     :return: whether.
     """
     dry = all(find(c.effect).hook == 'budget' for c in (one, two))
-    return dry and one.place == two.place and one.effect != two.effect
+    back = {one.effect, two.effect} == LEAD_BACK
+    return (dry or back) and one.place == two.place and one.effect != two.effect
 
 
 def bared(problem: Problem, state: Fit, k: int) -> Fit | None:
