@@ -16,9 +16,10 @@ from tendon_ros.diagnose.parts import simpler
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.least_limit import least_limit, LIMIT
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.untold import guesses_torque
+from tendon_ros.model.effect_use import in_force
+from tendon_ros.model.laws import modified
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
@@ -38,9 +39,8 @@ YIELDS = 0.25
 TURN, BEYOND = 2.0 * math.pi, 2.0
 #: times a factor may still go before its bound, where it is as good as there
 SPENT = 1.5
-#: knee of a torque limit that is as wide as it may be; and times the lowest there is that one is
-#: which has sunk to it
-WIDE, SUNK = 0.59, 1.01
+#: knee of a torque limit that is as wide as it may be
+WIDE = 0.59
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -128,7 +128,7 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
 def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """Return whether a limit sets in long before anything is cut off."""
-    return candidate.effect == LIMIT and values['knee'] > WIDE
+    return candidate.effect == 'torque_saturation' and values['knee'] > WIDE
 
 
 def biased(
@@ -164,9 +164,18 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     :param k: which of them.
     :return: whether.
     """
-    if model.causes[k].effect != LIMIT:
+    cause = model.causes[k]
+    if cause.effect != 'torque_saturation':
         return False
-    return model.values(k)['limit'] < SUNK * least_limit(problem, model, k)
+    instrument = problem.rollouts.instrument
+    [uses, *_] = problem.uses(model)
+    numbers = modified(instrument, in_force(instrument.effects, uses))
+    names = [f'motor_{name}' for name in instrument.motor_names]
+    j = names.index(cause.place)
+    usual = problem.rollouts.usual(
+        instrument.motor_names[j], numbers['motor_gain'][j], numbers['motor_bias'][j]
+    )
+    return model.values(k)['limit'] < usual
 
 
 def excused(problem: Problem, model: Model) -> frozenset[Candidate]:

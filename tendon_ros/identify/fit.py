@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.descent import Descent, follow, Place, TRIES, unpressed
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.least_limit import raised
 from tendon_ros.identify.slopes import Slopes
 
 FloatArray = NDArray[np.float64]
@@ -97,8 +96,6 @@ class Problem(Slopes):
         :param accuracy: relative gain of a round below which the fit ends.
         :return: the fit.
         """
-        model, sunk = raised(self, model)
-        known = {j: own for j, own in known.items() if j not in sunk} if known else known
         fit = self._descended(model, known, rounds, accuracy)
         # a rough fit is for comparing; where events are is found once it matters
         for _ in range(MOVES if accuracy <= CAREFUL else 0):

@@ -91,10 +91,12 @@ def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, mea
     assert spring['rest'] == pytest.approx(state.model.values(1)['phase'], abs=0.01)
 
 
-def test_other_dry_frictions_of_one_pulley_are_alike():
+def test_other_dry_frictions_of_one_pulley_are_alike_and_what_leads_it_back():
     other = Candidate('tension_friction', 'pulley_3')
     assert alike(COULOMB, other)
     assert not alike(COULOMB, COULOMB)
     assert not alike(COULOMB, Candidate('tension_friction', 'pulley_L'))
     assert not alike(COULOMB, WEIGHT)
-    assert not alike(WEIGHT, SPRING)
+    assert alike(WEIGHT, SPRING)
+    assert not alike(WEIGHT, WEIGHT)
+    assert not alike(WEIGHT, Candidate('joint_spring', 'pulley_L'))
