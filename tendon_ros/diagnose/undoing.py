@@ -57,11 +57,18 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
     if len(causes) < 2:
         return frozenset()
     changes = np.array([change(problem, state, k) for k in range(len(causes))])
+    changes = np.where(np.isfinite(changes), changes, 0.0)
     # a guess may scale all torques at once: friction, of which a gain makes more or less, and a
-    # motor that gives way are not opposed for that
-    changes = _own(problem, state, np.where(np.isfinite(changes), changes, 0.0))
+    # motor that gives way are not opposed for that; nor are those whose rest alone is
+    return _opposed(problem, state, changes) & _opposed(
+        problem, state, _own(problem, state, changes)
+    )
+
+
+def _opposed(problem: Problem, state: Fit, changes: FloatArray) -> frozenset[int]:
+    """Return the causes that undo each other by what they do, shape (causes, samples)."""
     channels = problem.channels().values()
-    happened = np.array([bool(cause.instants) for cause in causes])
+    happened = np.array([bool(cause.instants) for cause in state.model.causes])
     found: frozenset[int] = frozenset()
     stays = problem.structured(state.left) * changes.shape[1]
     for alike in (happened, ~happened):

@@ -111,6 +111,18 @@ def test_what_a_guess_does_as_well_is_no_opposition(monkeypatch, guessed, which)
     assert undoing(problem, state) == which
 
 
+def test_those_whose_rest_alone_is_opposed_do_not_undo_each_other(monkeypatch):
+    # both are mostly what an unknown torque constant does as well
+    causes = (Candidate('torque_saturation', 'motor_M'), Candidate('joint_spring', 'pulley_M'))
+    changes = [WAVE + 0.2 * OTHER, WAVE - 0.2 * OTHER]
+    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    problem, state = made_up(causes)
+    problem.tolerances = (SimpleNamespace(guessed=True),)
+    problem.prior = lambda _model: np.zeros(1)
+    state.slope = WAVE[:, None]
+    assert undoing(problem, state) == set()
+
+
 def made_up(causes):
     """Return a problem without tolerances, and a state with some causes."""
     state = SimpleNamespace(
