@@ -151,9 +151,8 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
 
     def again(motion: FloatArray, error: float, sampling: float) -> FloatArray:
         bins = segment.period * np.arange(len(motion))
-        # the middle of an even number of readings lies between two, which share their noise
-        between = 0.5 * sampling * (1 - round(segment.period / sampling) % 2)
-        read = np.arange(-between, len(motion) * segment.period, sampling)
+        # the middle of a bin lies between two readings, which share their noise
+        read = np.arange(-0.5 * sampling, len(motion) * segment.period, sampling)
         found: FloatArray = np.interp(bins, read, recounted(np.interp(read, bins, motion), error))
         return found
 

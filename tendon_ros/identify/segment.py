@@ -77,9 +77,9 @@ class Segment:
     One recording on uniform bins.
 
     ``period`` [s] is the length of a bin, ``time``, shape (bins,), its middle, counted from
-    ``start``, half a sample before the first reading. ``motion`` drives ``prescribed`` pulleys.
-    ``contacts`` are those that were there. ``pose`` is where the other pulleys began [rad].
-    ``pushed`` are pulleys on which a known torque acts, of a motor without encoder or of a
+    ``start``, at the first reading or half a sample before. ``motion`` drives ``prescribed``
+    pulleys. ``contacts`` are those that were there. ``pose`` is where the other pulleys began
+    [rad]. ``pushed`` are pulleys on which a known torque acts, of a motor without encoder or of a
     measured load; torques follow the motions in ``motion``. ``still``: of each prescribed pulley,
     shape (bins,), where its motion cannot be told from rest. ``sampling`` [s] is the time between
     samples of the slowest channel.
@@ -147,12 +147,13 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     known = [d.sensor.channel for d in driving]
     start = max(float(recording[name].time[0]) for name in known)
     end = min(float(recording[name].time[-1]) for name in known)
-    # readings in the middle of what they stand for: half a sample between a torque and the motion
-    # that asks for it is a sixth of what shakes a hundred times a second
     if by_seldom_torque(recording, driving):
-        start -= 0.5 * period
+        start -= 0.5 * period  # each reading in the middle of a bin
     else:
-        half = 0.5 * min(recording[name].sampling for name in known)
+        # the middle of a bin lies between two readings, which share their noise: counts make up
+        # the less acceleration for it
+        sampling = min(recording[name].sampling for name in known)
+        half = 0.5 * sampling * (1 - round(period / sampling) % 2)
         start, end = start - half, end + half
     bins = int((end - start) / period + ALL)
     time: FloatArray = period * (np.arange(bins, dtype=np.float64) + 0.5)
