@@ -11,8 +11,9 @@ from tendon_ros.identify.candidate import Candidate
 #: [s] that a diagnosis may take: most take one or two minutes; guesses of many bodies, and loops
 #: that shake, take more
 USUAL = 600.0
-#: part of it that the search may: what it has found must be weighed, too
-SEARCHES = 0.7
+#: part of it that the search may: what it has found must be weighed, too; and in which it looks
+#: for causes: a cause that nobody was tried in the place of is not named
+SEARCHES, LOOKS = 0.7, 0.35
 
 
 class Patience:
@@ -25,8 +26,15 @@ class Patience:
     def __init__(self, seconds: float = math.inf) -> None:
         self._seconds = seconds
         began = time.monotonic()
+        self._looks = began + LOOKS * seconds
         self._until, self._end = began + SEARCHES * seconds, began + seconds
-        self._cut = self._unasked = False
+        self._cut = self._unasked = self._short = False
+
+    @property
+    def late(self) -> bool:
+        """Whether no more causes are to be looked for, so that those found can be challenged."""
+        self._short |= time.monotonic() > self._looks
+        return self._short
 
     @property
     def over(self) -> bool:
@@ -52,7 +60,7 @@ class Patience:
             'what would separate the less probable of these causes from others was not looked '
             f'for, so as to take no more than {minutes:.3g} min'
         ] * self._unasked
-        if not self._cut:
+        if not (self._cut or self._short):
             return unasked
         told = f'the search for causes was cut short, so as to take no more than {minutes:.3g} min'
         if unmet:

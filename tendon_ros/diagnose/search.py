@@ -151,7 +151,7 @@ class Search:
         comes next fits what laws get wrong: nothing that no fit has seen is foretold better.
         """
         many = self.problem.by_misfit and len(state.model.causes) > MANY
-        return many or self._steps.patience.over
+        return many or self._steps.patience.late
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""

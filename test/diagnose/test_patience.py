@@ -22,7 +22,13 @@ def test_it_runs_out_once_and_for_all(monkeypatch):
     monkeypatch.setattr(clocked.time, 'monotonic', lambda: now[0])
     patience = Patience(60.0)
     assert not patience.over
+    assert not patience.late
     assert patience.words([COULOMB]) == []
+    now[0] += 22.0  # half of which it looks for causes
+    assert patience.late
+    assert not patience.over
+    assert 'cut short' in patience.words([])[0]
+    patience = Patience(60.0)
     now[0] += 43.0  # seven tenths of it are the search's
     # nobody has asked since: nothing was left out
     assert patience.words([]) == []
