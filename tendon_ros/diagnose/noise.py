@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.hearing import heard, neighbours
+from tendon_ros.identify.motion import reading_error
 from tendon_ros.identify.repetition import unrepeated
 from tendon_ros.identify.rollout import Rollouts
-from tendon_ros.identify.segment import Measured, reading_error, Segment
+from tendon_ros.identify.segment import Measured, Segment
 from tendon_ros.identify.smoothing import recounted, smoothed
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.signals import Signals

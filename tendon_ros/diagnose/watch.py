@@ -27,7 +27,8 @@ from tendon_ros.estimate.observer import Measurement
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.driving import motor_channels
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.segment import reading_error, Segment
+from tendon_ros.identify.motion import reading_error
+from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
 
 BoolArray = NDArray[np.bool_]

@@ -13,7 +13,8 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import Drive, drives
-from tendon_ros.identify.segment import FITTED, motion_of, reading_error, SETTLING
+from tendon_ros.identify.motion import motion_of, reading_error
+from tendon_ros.identify.segment import FITTED, SETTLING
 from tendon_ros.identify.smoothing import recounted
 from tendon_ros.identify.torque import by_seldom_torque, USUAL_BIN
 from tendon_ros.model.instrument import Instrument

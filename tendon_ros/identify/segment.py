@@ -14,11 +14,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.recording import Channel, Recording
+from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.loads import loads
 from tendon_ros.identify.means import binned
-from tendon_ros.identify.smoothing import at_rest, smoothed
+from tendon_ros.identify.motion import motion_in_bins, reading_error, thinned
+from tendon_ros.identify.smoothing import at_rest
 from tendon_ros.identify.torque import by_seldom_torque, torque_of
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.signals import Signals
@@ -30,7 +31,6 @@ BoolArray = NDArray[np.bool_]
 FITTED = 180.0
 ALL = 1e-6  # part of a bin that the last one may seem to lack, by the last digits of stamps
 LEVEL = 5  # bins of a running mean, short against what a torque limit cuts off
-OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
 SETTLING = 0.25  # [s] after the start, when how it was brought there is not yet forgotten
 #: [s] before the end, of which an encoder that is late as can be has not told yet, nor smoothed
 ENDING = 0.06
@@ -160,7 +160,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     rows = [
         torque_of(recording[d.sensor.channel], start, period, bins, instrument.control_period)
         if d.by_torque
-        else _motion(recording[d.sensor.channel], d.sensor, start, period, bins)
+        else motion_in_bins(recording[d.sensor.channel], d.sensor, start, period, bins)
         for d in driving
     ]
     # torques alone may jump, and must not ring
@@ -193,72 +193,6 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     )
 
 
-def thinned(channel: Channel) -> Channel:
-    """
-    Return what is to be smoothed, read no more often than tells anything.
-
-    :param channel: what was read.
-    :return: every tenth reading of ten thousand a second.
-    """
-    every = max(1, round(OFTEN / channel.sampling))
-    return Channel(channel.name, channel.time[::every], channel.value[::every])
-
-
-def motion_of(
-    channel: Channel, sensor: Sensor, start: float, sampling: float, samples: int
-) -> FloatArray:
-    """
-    Return the smoothed motion that an encoder saw.
-
-    :param channel: what was read.
-    :param sensor: its resolution and noise.
-    :param start: time of the first angle [s].
-    :param sampling: time between angles [s].
-    :param samples: how many.
-    :return: shape (samples,).
-    """
-    grid: FloatArray = start + sampling * np.arange(samples, dtype=np.float64)
-    nearest = np.clip(np.searchsorted(channel.time, grid), 1, len(channel.time) - 1)
-    gap = np.minimum(
-        np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
-    )
-    error = reading_error(channel, sensor)
-    known = sensor.resolution > 0.0 or sensor.noise > 0.0
-    count = sensor.resolution if known else error * np.sqrt(12.0)
-    return smoothed(channel.at(grid), gap < 1.5 * sampling, error, count)
-
-
-def _motion(
-    channel: Channel, sensor: Sensor, start: float, period: float, bins: int
-) -> FloatArray:
-    """Return the smoothed motion at the middles of the bins."""
-    sampling = channel.sampling
-    first = float(channel.time[np.searchsorted(channel.time, start)])
-    samples = round((start + bins * period - first) / sampling) + 1
-    angle = motion_of(channel, sensor, first, sampling, samples)
-    middles = start - first + period * (np.arange(bins) + 0.5)
-    found: FloatArray = np.interp(middles, sampling * np.arange(len(angle)), angle)
-    return found
-
-
-def reading_error(channel: Channel, sensor: Sensor) -> float:
-    """
-    Return the standard deviation of one reading.
-
-    :param channel: what was read.
-    :param sensor: its resolution and noise, where the instrument file gives them.
-    :return: in the unit of the channel; from the smallest step between readings where the file is
-        silent.
-    """
-    if sensor.resolution > 0.0 or sensor.noise > 0.0:
-        return float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-    steps = np.abs(np.diff(channel.value))
-    steps = steps[steps > 0.0]
-    if not steps.size:
-        return 0.0
-    return float(np.quantile(steps, 0.02) / np.sqrt(12.0))
-
-
 def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Segment | None:
     """
     Return a segment whose measured load acts on the model, in place of its contacts.
@@ -276,7 +210,7 @@ def loaded(instrument: Instrument, recording: Recording, segment: Segment) -> Se
     for sensor, levers in loads(instrument):
         if sensor.channel not in recording:
             continue
-        load = _motion(
+        load = motion_in_bins(
             thinned(recording[sensor.channel]),
             sensor,
             segment.start,

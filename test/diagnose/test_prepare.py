@@ -125,7 +125,7 @@ def test_encoders_at_ten_kilohertz_are_read_a_thousand_times_a_second(bench, fre
         seen.append(len(value))
         return smoothed(value, *args)
 
-    monkeypatch.setattr('tendon_ros.identify.segment.smoothed', noted)
+    monkeypatch.setattr('tendon_ros.identify.motion.smoothed', noted)
     found = {}
     for rate in (1e3, 1e4):
         channels = {n: often(c, rate) for n, c in free.channels.items()}

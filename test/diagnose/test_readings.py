@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.intake.readings import as_read
-from tendon_ros.identify.segment import reading_error
+from tendon_ros.identify.motion import reading_error
 from tendon_ros.model.instrument_file import load_instrument
 
 CHANNEL = 'actuator/pulley_body/position'

@@ -8,7 +8,8 @@ import pytest
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.binning import bin_length
-from tendon_ros.identify.segment import loaded, reading_error, segment_of
+from tendon_ros.identify.motion import reading_error
+from tendon_ros.identify.segment import loaded, segment_of
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.quantity import written
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.intake.step import Sifted
-from tendon_ros.identify.segment import reading_error
+from tendon_ros.identify.motion import reading_error
 from tendon_ros.model.instrument import Instrument, Sensor
 
 FloatArray = NDArray[np.float64]
