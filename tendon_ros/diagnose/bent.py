@@ -39,8 +39,8 @@ YIELDS = 0.25
 TURN, BEYOND = 2.0 * math.pi, 2.0
 #: times a factor may still go before its bound, where it is as good as there
 SPENT = 1.5
-#: knee of a torque limit that is as wide as it may be
-WIDE = 0.59
+#: part of the widest knee from which on a torque limit's is as wide as it may be
+WIDE = 0.98
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -128,7 +128,9 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
 def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """Return whether a limit sets in long before anything is cut off."""
-    return candidate.effect == 'torque_saturation' and values['knee'] > WIDE
+    return candidate.effect == 'torque_saturation' and any(
+        values[p.name] > WIDE * p.high for p in candidate.parameters if p.name == 'knee'
+    )
 
 
 def biased(

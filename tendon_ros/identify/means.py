@@ -32,19 +32,19 @@ def binned(
     # a reading on an edge belongs to both bins, whatever the last digit of its stamp says: half a
     # sample between a torque and the motion that asks for it is a sixth of what shakes a hundred
     # times a second
-    index = np.concatenate([np.floor(place[~between]), edge[between] - 1.0, edge[between]])
-    part = np.where(np.arange(len(index)) < np.count_nonzero(~between), 1.0, 0.5)
+    alone, shared = np.flatnonzero(~between), np.flatnonzero(between)
+    index = np.concatenate([np.floor(place[alone]), edge[shared] - 1.0, edge[shared]])
     inside = (index >= 0.0) & (index < bins)
+    index = index[inside].astype(np.int64)
+    # which readings these are, and what part of each a bin has
+    which = np.concatenate([alone, shared, shared])[inside]
+    part = np.where(between[which], 0.5, 1.0)
 
-    def added(weight: FloatArray, what: FloatArray) -> FloatArray:
-        rows = np.concatenate([what[~between], what[between], what[between]])
-        return np.bincount(
-            index[inside].astype(np.int64), weights=(weight * rows)[inside], minlength=bins
-        )
+    def added(weights: FloatArray) -> FloatArray:
+        return np.bincount(index, weights=weights, minlength=bins)
 
-    one = np.ones_like(channel.time)
-    count, squares = added(part, one), added(part**2, one)
-    total, moment = added(part, channel.value), added(part, channel.time - start)
+    count, squares = added(part), added(part**2)
+    total, moment = added(part * channel.value[which]), added(part * (channel.time[which] - start))
     with np.errstate(invalid='ignore', divide='ignore'):
         value = total / count
         late = moment / count - period * (np.arange(bins) + 0.5)
@@ -59,7 +59,7 @@ def binned(
         )
         value = np.where(known, value - slope * late, np.nan)
     quantised = sensor.resolution / np.sqrt(12.0)
-    shared = count[known] ** 2 / squares[known]
-    per_bin = max(1.0, float(np.median(shared))) if known.any() else 1.0
+    readings = count[known] ** 2 / squares[known]
+    per_bin = max(1.0, float(np.median(readings))) if known.any() else 1.0
     noise = float(np.hypot(quantised, sensor.noise / np.sqrt(per_bin)))
     return value, noise
