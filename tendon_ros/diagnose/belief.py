@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import excuses, is_constant, spent
+from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies
 from tendon_ros.diagnose.found import Found
@@ -79,6 +79,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(ready.problem, found.final.model)
     undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
     undone |= ahead.late if ahead else frozenset()
+    undone |= {k for k, cause in enumerate(causes) if at_bound(cause, found.final.model.values(k))}
     rest = _without(ready, found, undone)
     weighed = tuple(
         _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from tendon_ros.base.parameter import Parameter
 from tendon_ros.diagnose.parts import simpler
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
@@ -39,7 +40,8 @@ YIELDS = 0.25
 TURN, BEYOND = 2.0 * math.pi, 2.0
 #: times a factor may still go before its bound, where it is as good as there
 SPENT = 1.5
-#: part of the widest knee from which on a torque limit's is as wide as it may be
+#: part of the widest knee of a torque limit, or of the bound of an amplitude, from which on it is
+#: as wide as it may be
 WIDE = 0.98
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
@@ -113,17 +115,32 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
     Return whether a parameter is at its bound: no value that it could have tells what is there.
 
     A play that rattles is told as a coupling fifty times too soft, and bodies as light as nothing;
-    a supply that falls under load as a limit that sets in long before anything is cut off.
+    a cell of another gain as a pulley that runs out by a fifth of its radius; a supply that falls
+    under load as a limit that sets in long before anything is cut off.
 
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether.
     """
-    return _is_wide(candidate, values) or any(
-        p.low > 0.0 and not p.low * SPENT < values[p.name] < p.high / SPENT
-        for p in candidate.parameters
-        if p.neutral == 1.0 and not p.is_shape
-    )
+    return _is_wide(candidate, values) or at_bound(candidate, values)
+
+
+def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a factor is nearly at its bound, or an amplitude without a unit at it.
+
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
+    return any(_is_at_bound(p, values[p.name]) for p in candidate.parameters if not p.is_shape)
+
+
+def _is_at_bound(parameter: Parameter, value: float) -> bool:
+    if parameter.neutral == 1.0:
+        return parameter.low > 0.0 and not parameter.low * SPENT < value < parameter.high / SPENT
+    plain = parameter.unit == '1' and parameter.search != 'switch'
+    return plain and abs(value) > WIDE * parameter.high
 
 
 def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:

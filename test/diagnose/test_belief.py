@@ -148,6 +148,18 @@ def test_a_factor_at_its_bound_is_no_cause(found_of):
     assert not spent(COULOMB, {'torque': 1e5})
 
 
+def test_others_are_judged_without_what_is_at_its_bound(found_of, monkeypatch):
+    """It stands for something unknown, and so may they that need it."""
+    monkeypatch.setattr('tendon_ros.diagnose.belief.STEADY', 0.0)
+    ready, found = found_of((COULOMB, {'torque': 0.1}), (GAIN, {'gain': 1.1}))
+    chances = []
+    for gain in (1.1, 0.021):
+        model = found.final.model.without(1).joined(GAIN, {'gain': gain})
+        ended = replace(found, states=[found.start, replace(found.final, model=model)])
+        chances.append(belief(ready, ended).weighed[0].chance)
+    assert chances[0] > NAMED > chances[1]
+
+
 def test_what_many_do_nearly_as_well_beside_a_strong_law_is_named(found_of, monkeypatch):
     """Laws may be wrong by more than a noise power; a whole kind is vague only where it ties."""
     ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.bent import (
+    at_bound,
     at_once,
     biased,
     degenerate,
@@ -56,6 +57,26 @@ def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
     # but that is no limit
     assert spent(limit, values)
     assert not spent(limit, {'limit': 1.0, 'knee': 0.4})
+
+
+@pytest.mark.parametrize(
+    ('effect', 'place', 'values', 'bound'),
+    [
+        # a pulley that runs out by a fifth of its radius is another fault
+        ('eccentricity', 'pulley_2', {'amplitude': 0.2, 'phase': 0.1}, True),
+        ('eccentricity', 'pulley_2', {'amplitude': -0.2, 'phase': 0.1}, True),
+        ('eccentricity', 'pulley_2', {'amplitude': 0.15, 'phase': 0.1}, False),
+        ('tension_friction', 'pulley_2', {'coefficient': 1.0}, True),
+        ('sensor_rectified', 'load_cell', {'rectified': 1.0}, False),
+        ('coulomb_friction', 'pulley_2', {'torque': 1e5}, False),
+        ('torque_gain', 'motor_M', {'gain': 0.021}, True),
+        ('torque_gain', 'motor_M', {'gain': 1.2}, False),
+    ],
+)
+def test_no_size_at_its_bound_tells_what_is_there(effect, place, values, bound):
+    candidate = Candidate(effect, place)
+    assert at_bound(candidate, values) is bound
+    assert spent(candidate, values) is bound
 
 
 def test_a_constant_torque_is_a_bias_of_the_motor_and_elsewhere_nothing_that_has_a_name(
