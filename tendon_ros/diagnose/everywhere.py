@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import math
 
 from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import needed
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
@@ -27,6 +28,8 @@ LINEAR = ('joint_spring', 'load_cell_bias')
 BEGINNINGS = (1.0, 0.3)
 #: power a sample, of what stays of channels, that is nothing
 NOTHING = 0.01
+#: times the cost that one of several which undo each other may leave where all leave it
+LITTLE_MORE = 1.5
 #: rounds of the fit of all of it: from typical sizes the way is long
 FAR = 12
 #: rounds of fits that tell what is missed, with derivatives as they are, and of those with less
@@ -74,6 +77,9 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     rougher = problem.rougher()
     rough = steps.pool.map(lambda m: rougher.fitted(m, rounds=FAR, accuracy=1e-2), begun)
     best = min(rough, key=lambda fit: fit.cost)
+    best = rougher.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
+    while (single := _unopposed(steps, rougher, best)) is not None:
+        best = single
     state = problem.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
     while math.isfinite(state.cost):
         least = needed(problem, start, state)
@@ -103,6 +109,27 @@ def without_idle(steps: Steps, state: Fit) -> Fit:
             break
         found = smaller
     return state if found is state else steps.settled(found.model)
+
+
+def _unopposed(steps: Steps, problem: Problem, state: Fit) -> Fit | None:
+    """
+    Return a state without one of several causes that undo each other, if it leaves little more.
+
+    Two springs of one cable that are far from rest, one this way and one that, shift its force;
+    what rubs in its bearings has gone before they do, since each is missed badly alone.
+
+    :param steps: of the search.
+    :param problem: the data that were fitted.
+    :param state: with all that is usual.
+    :return: the state; None where nothing is undone, or needs to be.
+    """
+    group = undoing(problem, state) if math.isfinite(state.cost) else frozenset()
+    if not group:
+        return None
+    trials = steps.pool.map(lambda k: _glanced(problem, state, [k]), sorted(group))
+    best = min(trials, key=lambda fit: fit.cost)
+    ended = problem.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
+    return ended if ended.cost < LITTLE_MORE * state.cost else None
 
 
 def _idle_dropped(problem: Problem, state: Fit, least: float) -> Fit | None:

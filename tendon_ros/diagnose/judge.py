@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.bodies import turned
 from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.intervals import CLUSTER
+from tendon_ros.diagnose.further import saved
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import its_own
 from tendon_ros.diagnose.worth import by_channel, gains, TAKES_EVENT, TIMES_EVENT
@@ -185,7 +185,7 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     :return: whether it loses more than seconds of no meaning would on average, and more than
         nothing beside what it gains where it was fitted.
     """
-    gain = _foretold(ready, found, without)
+    gain = saved(ready.held, without.model, found.final.model)
     # what was held out may be a hold, of which a damping says next to nothing
     gained = (without.cost - found.final.cost) / max(len(found.final.left), 1)
     nothing = NOTHING * max(0.0, gained) * sum(int(mask.sum()) for mask in ready.held.masks)
@@ -226,13 +226,6 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     if before < LEFT_NOISE or shared < SHARED * gain:
         return True
     return shared < SHARED_BESIDE * gain and its_own(problem, final, k) < APART
-
-
-def _foretold(ready: Prepared, found: Found, without: Fit) -> FloatArray:
-    """Return what a cause saves of squares in noise deviations that no fit saw, by the second."""
-    poorer = ready.held.left(without.model)
-    left = ready.held.left(found.final.model)
-    return np.bincount(ready.held.clusters(CLUSTER), weights=poorer**2 - left**2)
 
 
 def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:

@@ -14,6 +14,8 @@ USUAL = 600.0
 #: part of it that the search may: what it has found must be weighed, too; and in which it looks
 #: for causes: a cause that nobody was tried in the place of is not named
 SEARCHES, LOOKS = 0.7, 0.35
+#: part of it in which it looks for what foretells more of a machine, of which little is named
+FORETELLS = 0.5
 
 
 class Patience:
@@ -27,6 +29,7 @@ class Patience:
         self._seconds = seconds
         began = time.monotonic()
         self._looks = began + LOOKS * seconds
+        self._half = began + FORETELLS * seconds
         self._until, self._end = began + SEARCHES * seconds, began + seconds
         self._cut = self._unasked = self._short = False
 
@@ -35,6 +38,13 @@ class Patience:
         """Whether no more causes are to be looked for, so that those found can be challenged."""
         self._short |= time.monotonic() > self._looks
         return self._short
+
+    @property
+    def half(self) -> bool:
+        """Whether nothing more is to be looked for by which a machine is foretold better."""
+        gone = time.monotonic() > self._half
+        self._short |= gone
+        return gone
 
     @property
     def over(self) -> bool:

@@ -17,6 +17,7 @@ from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.everywhere import without_idle
 from tendon_ros.diagnose.first import FirstRound
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.further import further
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
@@ -35,6 +36,7 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Screen, Seen
 
 ROUNDS = 6  # of looking for more causes
+FORETELL = 12  # causes at most of a machine, where blocks that were held out ask for them
 GAINED = 0.8  # part of the cost that a challenge may leave for another look where much is left
 
 
@@ -49,6 +51,7 @@ class Search:
     :param memory: of the steps of an interrupted search.
     :param begun: what an earlier search found in the same recordings.
     :param patience: once it has run out, the search ends with what it has.
+    :param held: blocks that no fit sees: of a machine, they tell which causes more there are.
     """
 
     def __init__(
@@ -60,8 +63,10 @@ class Search:
         memory: Memory | None = None,
         begun: Model | None = None,
         patience: Patience | None = None,
+        held: Problem | None = None,
     ) -> None:
         self.problem = problem
+        self._held = held
         self._steps = Steps(problem, candidates, jobs, report, patience)
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
@@ -91,6 +96,7 @@ class Search:
         state = found.final
         turn = len(found.states) - 1
         challenged: Fit | None = None
+        asked_held = False
         while True:
             grown: Fit | None = None
             asks = open_question(self.problem, state)
@@ -108,6 +114,8 @@ class Search:
                 else:
                     grown = usual.grown(state, screen, proposals)
                 turn += 1
+            if grown is None and not asked_held:
+                grown, asked_held = self._further(state), True
             if grown is not None:
                 state = grown
                 found.states.append(state)
@@ -147,11 +155,19 @@ class Search:
         """
         Return whether no more causes are looked for: there is no time, or no end.
 
-        Where channels weigh by what stays of them, and many causes are needed already, whatever
-        comes next fits what laws get wrong: nothing that no fit has seen is foretold better.
+        Where channels weigh by what stays of them, and many causes are needed already, what comes
+        next may fit what laws get wrong: what was held out is asked then (:mod:`.further`).
         """
         many = self.problem.by_misfit and len(state.model.causes) > MANY
         return many or self._steps.patience.late
+
+    def _further(self, state: Fit) -> Fit | None:
+        """Return a state with further causes of a machine; None where there are none."""
+        if self._held is None or not (self.problem.by_misfit and state.model.causes):
+            return None
+        self._steps.report('looking for causes that foretell what was held out', 0.45)
+        grown = further(self._steps, state, self._held, FORETELL)
+        return None if grown is state else grown
 
     def _imitates(self, found: Found) -> bool:
         """Return whether further causes would only help to imitate one that is not known."""

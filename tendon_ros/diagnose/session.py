@@ -181,7 +181,8 @@ def _searched(
     """Search, and on where noise, or blocks that were held out, held something to be found."""
 
     def search(begun: Model | None, kept: Memory | None = None) -> Found:
-        return Search(ready.problem, candidates, jobs, report, kept, begun, patience).run()
+        held = ready.held
+        return Search(ready.problem, candidates, jobs, report, kept, begun, patience, held).run()
 
     by = memory.weighed() if memory else None
     ready = ready.weighed(by) if by is not None else ready

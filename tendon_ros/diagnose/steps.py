@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.screening import Proposal, Screen
+from tendon_ros.identify.screening import Proposal, Screen, Seen
 from tendon_ros.identify.worths import worths
 
 FloatArray = NDArray[np.float64]
@@ -85,6 +86,7 @@ class Steps:
         self.report = report
         self.patience = patience or Patience()
         self.pool = ThreadPoolExecutor(jobs)
+        self._glanced: Seen = {}
 
     def screened(
         self,
@@ -115,6 +117,21 @@ class Steps:
         first.sort(key=lambda p: (not screen.suspects(p.candidate), -p.gain))
         again = list(self.pool.map(screen.corrected, first[:CORRECTED]))
         return sorted([*again, *first[CORRECTED:]], key=lambda p: -p.gain)
+
+    def glanced(self, state: Fit, leave: Sequence[Candidate] = ()) -> list[Proposal]:
+        """
+        Return proposals of all candidates that last, by a look at a few of many recordings.
+
+        :param state: what holds already.
+        :param leave: candidates to leave out.
+        :return: the proposals, best first, with gains as if all recordings were like these.
+        """
+        glance = self.problem.rougher()
+        seen = Screen(glance, glance.fitted(state.model, rounds=0), self._glanced)
+        share = len(state.left) / len(seen.left)
+        lasting = [c for c in self.candidates if not c.instants]
+        found = self.screened(seen, leave, lasting)
+        return [replace(p, gain=share * p.gain) for p in found]
 
     def fitted(
         self,

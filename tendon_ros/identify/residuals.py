@@ -23,6 +23,7 @@ from tendon_ros.model.instrument import EffectUse
 FloatArray = NDArray[np.float64]
 
 FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
+FEW = 5  # recordings that a first look takes of many
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
 
@@ -61,10 +62,16 @@ class Residuals:
         self._segment = np.repeat(np.arange(len(times)), [len(t) for t in times])
 
     def rougher(self) -> Self:
-        """Return the same by rollouts that are as rough as any may be: for first looks."""
+        """
+        Return what first looks need: rollouts as rough as any may be, of a few recordings.
+
+        Of many runs, evenly picked ones tell which way to go.
+        """
         roughest = ROUGHER[0] * fineness(self.rollouts.instrument)
-        rollouts = self.rollouts.like(self._segments, roughest)
-        return type(self)(rollouts, self.tolerances, self._used)
+        count = len(self._segments)
+        picked = np.unique(np.linspace(0, count - 1, min(count, FEW)).round().astype(int))
+        rollouts = self.rollouts.like([self._segments[n] for n in picked], roughest)
+        return type(self)(rollouts, self.tolerances, [self._used[n] for n in picked])
 
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:
