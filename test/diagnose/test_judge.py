@@ -56,7 +56,7 @@ def test_what_was_held_out_and_says_nothing_spoils_nothing(ready, monkeypatch, p
     samples = sum(int(mask.sum()) for mask in ready.held.masks)
     gained = (found.without[0].cost - found.final.cost) / len(found.final.left)
     lost = np.full(8, -part * gained * samples / 8.0)
-    monkeypatch.setattr(judge, '_foretold', lambda *_: lost)
+    monkeypatch.setattr(judge, 'saved', lambda *_: lost)
     assert spoils(ready, found, found.without[0]) is spoilt
 
 
@@ -70,7 +70,7 @@ def test_what_was_held_out_and_says_nothing_spoils_nothing(ready, monkeypatch, p
     ],
 )
 def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch, gained, spoilt):
-    monkeypatch.setattr(judge, '_foretold', lambda *_: np.array(gained))
+    monkeypatch.setattr(judge, 'saved', lambda *_: np.array(gained))
     found = found_with(ready.problem, FRICTION)
     # beside a cause that gains nothing where it was fitted
     assert spoils(ready, found, found.final) is spoilt
