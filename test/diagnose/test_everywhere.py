@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose import first, search
-from tendon_ros.diagnose.everywhere import everywhere, LINEAR, thinned_out, USUAL, without_idle
+from tendon_ros.diagnose.everywhere import (
+    _unopposed,
+    everywhere,
+    LINEAR,
+    thinned_out,
+    USUAL,
+    without_idle,
+)
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument_file import load_instrument
@@ -81,3 +89,25 @@ def test_guesses_that_explain_all_but_noise_ask_for_no_many(measured_on, monkeyp
     # the inertia has gone as far both times
     assert searched() == (True, 0)
     assert searched(('coulomb_friction', 'pulley_axis', {'torque': 0.05})) == (True, 1)
+
+
+def test_of_causes_that_undo_each_other_one_goes_first(measured_on):
+    """A spring that is relaxed turns away, and a bias that takes its torque back."""
+    body = load_instrument('single_body')
+    friction = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    run = measured_on(body, friction)
+    problem = prepared([run], body).problem
+    steps = Steps(problem, [], 1, lambda *_: None)
+    model = problem.empty.joined(Candidate(*friction[:2]), {'torque': 0.2})
+    alone = problem.fitted(model)
+    assert _unopposed(steps, problem, alone) is None
+    model = model.joined(Candidate('torque_bias', 'motor_body'), {'torque': 0.2})
+    model = model.joined(
+        Candidate('joint_spring', 'pulley_body'), {'stiffness': 2e-3, 'rest': -94.0}
+    )
+    opposed = problem.fitted(model, rounds=1)
+    assert undoing(problem, opposed) == {1, 2}
+    kept = _unopposed(steps, problem, opposed)
+    assert kept is not None
+    assert Candidate(*friction[:2]) in kept.model.causes
+    assert len(kept.model.causes) == 2

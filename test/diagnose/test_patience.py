@@ -28,6 +28,9 @@ def test_it_runs_out_once_and_for_all(monkeypatch):
     assert patience.late
     assert not patience.over
     assert 'cut short' in patience.words([])[0]
+    assert not patience.half
+    now[0] += 9.0
+    assert patience.half
     patience = Patience(60.0)
     now[0] += 43.0  # seven tenths of it are the search's
     # nobody has asked since: nothing was left out

@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.residuals import FEW
 from tendon_ros.identify.rollout import loosest, ROUGHER
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import usual_part
@@ -249,3 +250,13 @@ def test_rollouts_are_rougher_where_laws_leave_more_than_noise(bench, sound_run)
     for mask, same in zip(rough.masks, fine.problem.masks, strict=True):
         np.testing.assert_array_equal(mask, same)
     assert 0.0 < np.sqrt(np.mean((rough.left(rough.empty) - left) ** 2)) < 0.5
+
+
+def test_a_first_look_takes_a_few_of_many_recordings(bench, sound_run):
+    runs = [replace(sound_run, name=f'run{n}') for n in range(FEW + 3)]
+    problem = prepared(runs, bench).problem
+    few = problem.rougher()
+    names = [s.name for s in few.rollouts.segments]
+    assert len(names) == FEW
+    assert {'run0', f'run{FEW + 2}'} <= set(names)
+    assert len(few.left(few.empty)) < 0.7 * len(problem.left(problem.empty))
