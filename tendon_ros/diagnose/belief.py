@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
-from tendon_ros.diagnose.company import companies
+from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils, takes_noise
 from tendon_ros.diagnose.naming import NAMED, Weighed
@@ -89,6 +89,10 @@ def belief(ready: Prepared, found: Found) -> Belief:
         k for k in range(len(causes)) if k not in undone and not _open(ready.problem, found, k)
     ]
     together = companies(ready, found, weighed, able, rest.left)
+    if ready.problem.by_misfit and not together:
+        stays = [k for k in range(len(causes)) if k not in undone]
+        rubs = rubbing(ready, found, weighed, stays, rest.left)
+        together = [rubs] if rubs else []
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}

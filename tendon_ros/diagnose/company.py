@@ -21,6 +21,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import probability, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.effects import find
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 
 FloatArray = NDArray[np.float64]
@@ -28,6 +29,7 @@ FloatArray = NDArray[np.float64]
 #: times what each is missed alone that two causes must be missed together, and times what a
 #: company and a further cause are missed apart
 MAKES_UP = 2.0
+FAR = 12  # rounds of a fit without any dry friction
 
 
 @dataclass(frozen=True)
@@ -74,21 +76,66 @@ def companies(
     for linked in sets:
         members = _grown(missed, linked, doubted, alone)
         doubted -= set(members)
-        first, *others = sorted(members, key=lambda k: -alone[k])
-        without = missed.fit(members)
-        if not math.isfinite(without.cost):
-            continue
-        # what undoes each other is not believed, and what stays is the same for all
-        signs = signs_beside(problem, found, without, left)
-        likely = probability(signs)
-        if likely < NAMED or spoils(ready, found, without):
-            continue
-        equal = [causes[k] for k in others]
-        equal += [e for k in (first, *others) for e in weighed[k].equal]
-        alike = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
-        whole = replace(weighed[first], equal=alike, signs=signs, chance=likely, without=without)
-        named.append(Company((first, *others), whole))
+        company = _as_one(ready, found, weighed, members, alone, missed.fit(members), left)
+        named += [company] if company else []
     return named
+
+
+def rubbing(
+    ready: Prepared,
+    found: Found,
+    weighed: Sequence[Weighed],
+    able: Sequence[int],
+    left: FloatArray,
+) -> Company | None:
+    """
+    Return the dry frictions of a machine as one, of which each alone is uncertain.
+
+    Every bearing of a machine rubs, by some law or another. Of six frictions none is missed much
+    alone, and by which of them something is told is as uncertain as their laws. That it is
+    friction is not, if nothing else does without any.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :param weighed: its causes.
+    :param able: those that others do not undo.
+    :param left: what all that may be believed leaves, shape (samples,).
+    :return: the company; None where one of them is certain, or all of them are not.
+    """
+    causes = found.final.model.causes
+    dry = tuple(k for k in able if find(causes[k].effect).hook == 'budget')
+    if len(dry) < 2 or any(weighed[k].chance >= NAMED for k in dry):
+        return None
+    alone = {k: found.without[k].cost - found.final.cost for k in dry}
+    # who does without all of them goes far
+    without = ready.problem.fitted(found.final.model.without(*dry), rounds=FAR, accuracy=1e-2)
+    return _as_one(ready, found, weighed, dry, alone, without, left)
+
+
+def _as_one(
+    ready: Prepared,
+    found: Found,
+    weighed: Sequence[Weighed],
+    members: Sequence[int],
+    alone: Mapping[int, float],
+    without: Fit,
+    left: FloatArray,
+) -> Company | None:
+    """Return causes as a company, if it can be named; ``without``: the fit without all of them."""
+    if not math.isfinite(without.cost):
+        return None
+    causes = found.final.model.causes
+    first, *others = sorted(members, key=lambda k: -alone[k])
+    # what undoes each other is not believed, and what stays is the same for all
+    signs = signs_beside(ready.problem, found, without, left)
+    likely = probability(signs)
+    if likely < NAMED or spoils(ready, found, without):
+        return None
+    equal = [causes[k] for k in others]
+    equal += [e for k in (first, *others) for e in weighed[k].equal]
+    alike = tuple(dict.fromkeys(e for e in equal if e != causes[first]))
+    whole = replace(weighed[first], equal=alike, signs=signs, chance=likely, without=without)
+    return Company((first, *others), whole)
 
 
 class _Missed:
