@@ -9,7 +9,7 @@ import pytest
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bent import spent
-from tendon_ros.diagnose.company import _grown, companies, MAKES_UP
+from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
 from tendon_ros.diagnose.naming import NAMED
@@ -77,6 +77,25 @@ def test_much_that_stays_without_what_undoes_each_other_speaks_against_a_company
     [company] = companies(ready, found, weighed, [0, 1], found.final.left)
     much = np.full_like(found.final.left, math.sqrt(10.0 * company.weighed.signs.worth))
     assert companies(ready, found, weighed, [0, 1], much) == []
+
+
+def test_dry_frictions_that_are_each_uncertain_are_one(alike):
+    """By which law, and where, cannot be said; that something rubs can."""
+    ready, found = alike
+    able = range(len(found.final.model.causes))
+    weighed = [replace(w, chance=0.3) for w in belief(ready, found).weighed]
+    one = rubbing(ready, found, weighed, able, found.final.left)
+    assert one is not None
+    assert sorted(one.members) == [0, 1]
+    assert one.weighed.chance > NAMED
+    assert {one.weighed.cause, *one.weighed.equal} >= {COULOMB, TENSION}
+    assert GAIN not in one.weighed.equal
+    # one that is certain needs no other, and one alone is no company
+    sure = [replace(weighed[0], chance=0.9), *weighed[1:]]
+    assert rubbing(ready, found, sure, able, found.final.left) is None
+    assert rubbing(ready, found, weighed, [0, 2], found.final.left) is None
+    # where much stays, friction may stand in for something unknown
+    assert rubbing(ready, found, weighed, able, 100.0 + found.start.left) is None
 
 
 def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
