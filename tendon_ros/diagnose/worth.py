@@ -28,6 +28,8 @@ TAKES = 0.65
 HOPELESS, MOST_LEFT = 10.0, 0.15
 #: the same, for a machine of which guesses are found: there challenges only polish
 MACHINE = 3.0
+#: noise powers a sample that stay, from which on noise says nothing of how well channels are told
+DROWNED = 10.0
 #: times the noise's power that noise never has, shared by neighbours or not
 LOUD = 2.0
 #: part of what is left in one channel that it must explain else
@@ -215,15 +217,18 @@ def outweighed(problem: Problem, start: Fit, state: Fit) -> bool:
     """
     Return whether channels weigh by their noise alone where laws leave more than that.
 
+    Whether laws may be wrong by so much or not: beside ten times the noise it is no weight.
+
     :param problem: the data.
     :param start: without any cause.
     :param state: with all that was found.
     :return: whether they should weigh by what stays of them.
     """
     alone = len(problem.channels()) < 2
-    if alone or problem.by_misfit or problem.structured(state.left) < 1.0:
+    stays = problem.structured(state.left)
+    if alone or problem.by_misfit or stays < 1.0:
         return False
-    return beyond_laws(problem, start, state)
+    return stays > DROWNED or beyond_laws(problem, start, state)
 
 
 def _beyond(problem: Problem, start: Fit, state: Fit) -> float:
