@@ -93,7 +93,7 @@ def rubbing(
 
     Every bearing of a machine rubs, by some law or another. Of six frictions none is missed much
     alone, and by which of them something is told is as uncertain as their laws. That it is
-    friction is not, if nothing else does without any.
+    friction is not, if a fit without any leaves much more.
 
     :param ready: the problem.
     :param found: what the search has found.
