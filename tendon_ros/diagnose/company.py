@@ -21,7 +21,6 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import probability, signs_beside, spoils
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.effects import find
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 
 FloatArray = NDArray[np.float64]
@@ -103,7 +102,7 @@ def rubbing(
     :return: the company; None where one of them is certain, or all of them are not.
     """
     causes = found.final.model.causes
-    dry = tuple(k for k in able if find(causes[k].effect).hook == 'budget')
+    dry = tuple(k for k in able if causes[k].dry)
     if len(dry) < 2 or any(weighed[k].chance >= NAMED for k in dry):
         return None
     alone = {k: found.without[k].cost - found.final.cost for k in dry}

@@ -27,36 +27,37 @@ class Patience:
 
     def __init__(self, seconds: float = math.inf) -> None:
         self._seconds = seconds
-        began = time.monotonic()
-        self._looks = began + LOOKS * seconds
-        self._half = began + FORETELLS * seconds
-        self._until, self._end = began + SEARCHES * seconds, began + seconds
+        self._began = time.monotonic()
         self._cut = self._unasked = self._short = False
 
     @property
     def late(self) -> bool:
         """Whether no more causes are to be looked for, so that those found can be challenged."""
-        self._short |= time.monotonic() > self._looks
+        self._short |= self._past(LOOKS)
         return self._short
 
     @property
     def half(self) -> bool:
         """Whether nothing more is to be looked for by which a machine is foretold better."""
-        gone = time.monotonic() > self._half
+        gone = self._past(FORETELLS)
         self._short |= gone
         return gone
 
     @property
     def over(self) -> bool:
         """Whether it has run out: whoever asks leaves out then what would have come next."""
-        self._cut |= time.monotonic() > self._until
+        self._cut |= self._past(SEARCHES)
         return self._cut
 
     @property
     def ended(self) -> bool:
         """Whether all of the time is up: what has an answer keeps it, what has none stays open."""
-        self._unasked |= time.monotonic() > self._end
+        self._unasked |= self._past(1.0)
         return self._unasked
+
+    def _past(self, part: float) -> bool:
+        """Return whether a part of the time is up."""
+        return time.monotonic() > self._began + part * self._seconds
 
     def words(self, unmet: Sequence[Candidate]) -> list[str]:
         """

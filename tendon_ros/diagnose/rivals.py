@@ -10,7 +10,6 @@ import numpy as np
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.steps import judged_cost, Steps
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 from tendon_ros.identify.worths import worths
@@ -47,7 +46,7 @@ def alike(one: Candidate, two: Candidate) -> bool:
     :param two: another.
     :return: whether.
     """
-    dry = all(find(c.effect).hook == 'budget' for c in (one, two))
+    dry = one.dry and two.dry
     back = {one.effect, two.effect} == LEAD_BACK
     return (dry or back) and one.place == two.place and one.effect != two.effect
 

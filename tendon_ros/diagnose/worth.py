@@ -271,11 +271,7 @@ def moving(problem: Problem, before: Fit, after: Fit) -> Fit:
 
 def _held(problem: Problem, before: Fit, after: Fit) -> BoolArray:
     """Return which samples are torques of resting motors on whose pulleys new friction acts."""
-    rubs = {
-        c.place
-        for c in set(after.model.causes) - set(before.model.causes)
-        if find(c.effect).hook == 'budget'
-    }
+    rubs = {c.place for c in set(after.model.causes) - set(before.model.causes) if c.dry}
     held = np.zeros(len(before.left), dtype=np.bool_)
     for place in rubs & set(problem.resting):
         held |= problem.resting[place]

@@ -51,6 +51,11 @@ class Candidate:
         return tuple(p for p in self.parameters if p.search == 'instant')
 
     @property
+    def dry(self) -> bool:
+        """Whether it is a dry friction, by whatever law."""
+        return find(self.effect).hook == 'budget'
+
+    @property
     def switches(self) -> bool:
         """Whether it is there or not, and has no size."""
         return any(p.search == 'switch' for p in self.parameters)

@@ -13,7 +13,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.effects.presliding_friction import BENDING
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
@@ -105,7 +104,7 @@ class Model:
 
     def _bristles(self, causes: Sequence[Candidate]) -> dict[tuple[str, str], float]:
         """Return what the dry friction of some causes has beside its size, as far as known."""
-        dry = sorted({c.place for c in causes if find(c.effect).hook == 'budget'})
+        dry = sorted({c.place for c in causes if c.dry})
         own = {c.place for c in causes if c.effect == BENT}
         return {
             (place, name): self.bristle.get((place, name), 0.0)

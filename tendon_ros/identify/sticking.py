@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from tendon_ros.base.errors import EffectError, SimulationError
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import BRISTLES, Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -32,9 +31,7 @@ def sticking(problem: Problem, fit: Fit) -> list[BoolArray | None]:
     instrument = problem.rollouts.instrument
     driven = {f'pulley_{name}' for name in instrument.driven}
     dry = [
-        k
-        for k, cause in enumerate(fit.model.causes)
-        if find(cause.effect).hook == 'budget' and cause.place not in driven
+        k for k, cause in enumerate(fit.model.causes) if cause.dry and cause.place not in driven
     ]
     if not dry:
         return found
