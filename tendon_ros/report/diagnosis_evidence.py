@@ -27,6 +27,7 @@ from tendon_ros.report.diagnosis_words import (
 from tendon_ros.report.page import Picture, Prose, Section, Table
 
 _MOST_RIVALS = 12
+_ABREAST = 5  # recordings that fit side by side
 _OPEN, _CLOSED = 6, 2  # pictures of traces: more would bury the telling ones
 
 
@@ -179,18 +180,23 @@ def _by_probability(visible: Iterable[Judged]) -> tuple[tuple[str, str, str], ..
 def _by_recording(evidence: Evidence) -> Section:
     """Return what each recording alone says of each cause: where it shows, and where it cannot."""
     sizes = list(dict.fromkeys((t.effect, t.place, t.parameter) for t in evidence.told))
+    recordings = list(dict.fromkeys(t.recording for t in evidence.told))
     said = {(t.recording, t.effect, t.place, t.parameter): _told(t) for t in evidence.told}
-    rows = tuple(
-        (recording, *(said.get((recording, *size), 'not there') for size in sizes))
-        for recording in dict.fromkeys(t.recording for t in evidence.told)
-    )
-    header = tuple(f'{effect_words(e, p)}: {name}' for e, p, name in sizes)
+    names = [f'{effect_words(e, p)}: {name}' for e, p, name in sizes]
+    cells = [[said.get((r, *size), 'not there') for size in sizes] for r in recordings]
+    if len(recordings) > _ABREAST:
+        header = ('recording', *names)
+        rows = tuple((r, *row) for r, row in zip(recordings, cells, strict=True))
+    else:  # what is compared stands side by side
+        header = ('size', *recordings)
+        across = zip(*cells, strict=True)
+        rows = tuple((name, *row) for name, row in zip(names, across, strict=True))
     text = (
         'Each recording on its own, one step from the fit to all of them. Sizes that differ by '
         'more than their intervals say that a law is not quite the machine’s. Where nothing can '
         'be told: the cause leaves no trace there, or tolerances and other causes do the same.'
     )
-    table = Table(('recording', *header), rows, wraps=True)
+    table = Table(header, rows, wraps=True)
     return Section('What each recording tells', (Prose(text), table), 'recordings')
 
 

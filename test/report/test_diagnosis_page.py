@@ -4,6 +4,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 import re
 
+from tendon_ros.report.diagnosis_evidence import evidence_sections
 from tendon_ros.report.diagnosis_page import diagnosis_page
 from tendon_ros.report.diagnosis_verdict import headline, LABELS
 from tendon_ros.report.diagnosis_words import channel_words, effect_words
@@ -135,3 +136,27 @@ def test_what_only_holds_is_no_cause_and_said_to_be_none(page):
     assert 'Used, though not named.' in said
     assert '31 %' in said
     assert 'Used, though not named.' not in text_of(page('partly'))
+
+
+def of_recordings(case, count: int):
+    """Return the table of what each of some recordings tells."""
+    diagnosis, evidence = case('three_causes')
+    told = [replace(evidence.told[0], recording=f'run_{k}', value=0.1 * k) for k in range(count)]
+    sections = evidence_sections(diagnosis, replace(evidence, told=tuple(told)))
+    (section,) = (s for s in sections if s.anchor == 'recordings')
+    return section.blocks[-1]
+
+
+def test_sizes_of_few_recordings_stand_side_by_side(case):
+    table = of_recordings(case, 3)
+    assert table.header == ('size', 'run_0', 'run_1', 'run_2')
+    (row,) = table.rows
+    assert row[0].endswith(': coefficient')
+    assert [cell.split()[0] for cell in row[1:]] == ['0.000', '0.100', '0.200']
+
+
+def test_sizes_of_many_recordings_stand_below_each_other(case):
+    table = of_recordings(case, 12)
+    assert [row[0] for row in table.rows] == [f'run_{k}' for k in range(12)]
+    assert table.header[0] == 'recording'
+    assert len({row[1] for row in table.rows}) == 12
