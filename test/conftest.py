@@ -11,7 +11,12 @@ from tendon_ros.base.threads import use_one_thread
 use_one_thread()  # as all programs do; pytest runs a process on every core
 
 # these import numpy, which reads then how many threads it may use
-from tendon_ros.model.instrument import EffectUse  # noqa: E402
+from tendon_ros.bags.importing import import_runs  # noqa: E402
+from tendon_ros.bags.mapping import load_mapping  # noqa: E402
+from tendon_ros.base.resources import config_path  # noqa: E402
+from tendon_ros.diagnose.prepare import prepared  # noqa: E402
+from tendon_ros.identify.driving import as_recorded  # noqa: E402
+from tendon_ros.model.instrument import Curve, EffectUse  # noqa: E402
 from tendon_ros.model.instrument_file import load_instrument  # noqa: E402
 from tendon_ros.model.session import simulate  # noqa: E402
 from tendon_ros.model.trajectory_choice import chosen_trajectory  # noqa: E402
@@ -22,6 +27,10 @@ settings.load_profile('untimed')
 
 #: recordings that do not come with the package; tests that want them skip without
 SHARED = Path(__file__).resolve().parents[2] / 'shared'
+
+BY_VOLTAGE = Path(__file__).parents[1] / 'docs' / 'rigs' / 'belt_by_voltage.csv'
+SOFT, SMOOTH, HEAVY = 0.1, 0.1, 5.0  # times what the file of that tutorial guesses
+MOTORS = ('left', 'right')
 
 
 def _shared(relative: str) -> Path:
@@ -89,3 +98,28 @@ def measured_on():
         return replace(run, name=name, channels=channels)
 
     return record
+
+
+@pytest.fixture(scope='session')
+def by_voltage():
+    """Return the table of a belt of which voltage and speed are known."""
+    return BY_VOLTAGE
+
+
+@pytest.fixture(scope='session')
+def far_off_belt():
+    """Return the recording of a belt of which voltage and speed are known, and a file far off."""
+    [run] = import_runs(BY_VOLTAGE, load_mapping(config_path('imports/belt_by_voltage.yaml')))
+    belt = as_recorded(load_instrument('belt_by_voltage'), set(run.channels))
+    soft = tuple(
+        Curve(c.name, c.elongation, tuple(SOFT * t for t in c.tension)) for c in belt.curves
+    )
+    loops = tuple(replace(loop, pretension=SOFT * loop.pretension) for loop in belt.loops)
+    wheels = tuple(
+        replace(
+            p, damping=SMOOTH * p.damping, inertia=p.inertia * (HEAVY if p.name in MOTORS else 1.0)
+        )
+        for p in belt.pulleys
+    )
+    wrong = replace(belt, curves=soft, loops=loops, pulleys=wheels)
+    return prepared([run], wrong).problem

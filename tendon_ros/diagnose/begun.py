@@ -14,11 +14,14 @@ from tendon_ros.diagnose.parts import is_part, widened
 from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway
 from tendon_ros.diagnose.steps import best_of, Steps
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen
 
 #: rounds and accuracy of fits: only careful ones tell whether there is more to an effect
 CAREFUL, BRIEF = (20, 1e-3), (6, 1e-2)
+#: parts of the size that first order says from which friction may begin
+LESS = (1.0, 0.3, 0.1, 0.03)
 BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
 
 
@@ -102,7 +105,31 @@ class Begun:
         if rest is None:
             return []
         proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], far))
-        return self._instead(state, cause, [(p.candidate, p.values) for p in proposals])
+        sized = self._steps.pool.map(lambda p: self._sized(rest.model, p), proposals)
+        begun = [(p.candidate, values) for p, values in zip(proposals, sized, strict=True)]
+        return self._instead(state, cause, begun)
+
+    def _sized(self, rest: Model, proposal: Proposal) -> dict[str, float]:
+        """
+        Return the parameters from which the fit of a proposal begins.
+
+        Friction that holds all of a motion does not tell how much less would let it go, so less is
+        tried as well.
+        """
+        if not proposal.candidate.dry:
+            return proposal.values
+        coordinates = proposal.candidate.coordinates
+        tried = [
+            coordinates.values(proposal.resized([part * step for step in proposal.steps]))
+            for part in LESS
+        ]
+
+        def cost(values: dict[str, float]) -> float:
+            left = self._problem.left(rest.joined(proposal.candidate, values))
+            found = float(left @ left)
+            return found if math.isfinite(found) else math.inf
+
+        return min(tried, key=cost)
 
     def _instead(
         self,

@@ -15,9 +15,11 @@ import math
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import needed
+from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.tied import tied
 from tendon_ros.identify.worths import growth
 
 #: what every real transmission has; laws that hold these are tried later, in their place
@@ -26,6 +28,8 @@ USUAL = ('coulomb_friction', 'tension_friction', 'backlash', 'joint_spring', 'lo
 LINEAR = ('joint_spring', 'load_cell_bias')
 #: parts of what is typical that the others have at first: of several ways one may end early
 BEGINNINGS = (1.0, 0.3)
+#: places from which it is begun where torque drives
+FOLLOWED = 3
 #: power a sample, of what stays of channels, that is nothing
 NOTHING = 0.01
 #: times the cost that one of several which undo each other may leave where all leave it
@@ -71,12 +75,18 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     :return: the fit; None where the model with all of it diverges.
     """
     problem = steps.problem
-    before = problem.empty if known is None else known
-    begun = [everywhere(steps.candidates, before, part) for part in BEGINNINGS]
+    before = problem.begun if known is None else known
+
+    def all_of(part: float) -> Model:
+        return everywhere(steps.candidates, before, part)
+
+    begun = tied(problem, all_of)[:FOLLOWED] if swings(problem) else list(map(all_of, BEGINNINGS))
     # the way is long, and rollouts with all of it are slow
     rougher = problem.rougher()
     rough = steps.pool.map(lambda m: rougher.fitted(m, rounds=FAR, accuracy=1e-2), begun)
-    best = min(rough, key=lambda fit: fit.cost)
+    best = min(rough, key=lambda fit: fit.cost, default=None)
+    if best is None:
+        return None
     best = rougher.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
     while (single := _unopposed(steps, rougher, best)) is not None:
         best = single

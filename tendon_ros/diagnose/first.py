@@ -67,7 +67,7 @@ class FirstRound:
         for candidate in self._steps.candidates:
             if may_be_signless(self.problem, candidate):
                 lost = find(candidate.effect).typical
-                alone = self.problem.empty.joined(candidate, lost)
+                alone = self.problem.begun.joined(candidate, lost)
                 fits += [
                     from_afar(self._steps, self._start.model.joined(candidate, lost)),
                     self._of_many(alone),
@@ -91,7 +91,7 @@ class FirstRound:
 
     def _from_the_file(self, known: Model | None = None) -> Fit | None:
         """Return causes that are found beside the numbers of the file as they are."""
-        file = self.problem.fitted(known or self.problem.empty, rounds=0)
+        file = self.problem.fitted(known or self.problem.begun, rounds=0)
         # where nothing has moved far, signatures are what they are beside the tolerances fitted
         seen = None if far_off(self.problem, self._start) else self._seen
         screen = Screen(self.problem, file, seen)

@@ -74,6 +74,7 @@ class Places:
         self._slope = fit.slope[:, fit.slope.shape[1] - moving :]
         self._prior = problem.prior(fit.model)[fit.slope.shape[1] - moving :]
         self._moved = fit.model.moved
+        self._likely = problem.begun.moved
         self._ends = np.array([t.axis.ends for t in problem.tolerances]).reshape(-1, 2)
 
     def _all(self, fit: Fit) -> list[tuple[str, FloatArray]]:
@@ -166,7 +167,8 @@ class Places:
 
         slope = np.array([cleared(column) for column in self._slope.T]).reshape(-1, len(left)).T
         normal = slope.T @ slope + np.diag(self._prior + 1e-9)
-        wished = moved - np.linalg.solve(normal, slope.T @ cleared(left) + self._prior * moved)
+        wish = slope.T @ cleared(left) + self._prior * (moved - self._likely)
+        wished = moved - np.linalg.solve(normal, wish)
         after = np.clip(wished, self._ends[:, 0], self._ends[:, 1])
         left = left + self._slope @ (after - moved)
         pull = self._summed(left * direction)
@@ -186,7 +188,7 @@ class Places:
         design = np.hstack([design / scale, self._slope])
         prior = np.concatenate([np.full(len(scale), 1e-9), self._prior])
         pull = design.T @ left
-        pull[len(scale) :] += self._prior * moved
+        pull[len(scale) :] += self._prior * (moved - self._likely)
         return float(pull @ np.linalg.solve(design.T @ design + np.diag(prior), pull))
 
 

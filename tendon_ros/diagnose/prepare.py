@@ -36,7 +36,8 @@ class Prepared:
     The problem of the fitted bins, that of those held out, and of both.
 
     ``shift``: by how many blocks what is held out has moved; ``looser``: times what is usual that
-    numbers may be off of which the file does not say how well it knows them.
+    numbers may be off of which the file does not say how well it knows them; ``likely``: where
+    tolerances are likely to be, on their axes, where that is not the file.
     """
 
     problem: Problem
@@ -45,6 +46,7 @@ class Prepared:
     noise: Noise
     shift: int = 0
     looser: float = 1.0
+    likely: tuple[float, ...] = ()
 
     def heard_again(self, model: Model) -> Prepared:
         """
@@ -66,7 +68,7 @@ class Prepared:
             )
             for was, now in zip(before, self.noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.like(segments), self.noise, self.shift, self.looser)
+        return _problems(rollouts.like(segments), self.noise, self.shift, self.looser, self.likely)
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -110,7 +112,7 @@ class Prepared:
         rollouts = self.whole.rollouts
         tolerance = loosest(rollouts.instrument, segments)
         again = rollouts.like(segments, tolerance)
-        return _problems(again, self.noise, self.shift, self.looser)
+        return _problems(again, self.noise, self.shift, self.looser, self.likely)
 
     def moved(self, shift: int) -> Prepared:
         """
@@ -119,7 +121,7 @@ class Prepared:
         :param shift: by how many blocks to move them.
         :return: the problems.
         """
-        return _problems(self.whole.rollouts, self.noise, shift, self.looser)
+        return _problems(self.whole.rollouts, self.noise, shift, self.looser, self.likely)
 
     def loosened(self, looser: float) -> Prepared:
         """
@@ -128,7 +130,16 @@ class Prepared:
         :param looser: times what is usual.
         :return: the problems.
         """
-        return _problems(self.whole.rollouts, self.noise, self.shift, looser)
+        return _problems(self.whole.rollouts, self.noise, self.shift, looser, self.likely)
+
+    def leaning(self, likely: Sequence[float]) -> Prepared:
+        """
+        Return the same with another opinion of where the numbers of the file are.
+
+        :param likely: place of each tolerance on its axis.
+        :return: the problems.
+        """
+        return _problems(self.whole.rollouts, self.noise, self.shift, self.looser, tuple(likely))
 
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
@@ -159,11 +170,21 @@ def _thinned(recording: Recording, instrument: Instrument) -> Recording:
     return replace(recording, channels=channels)
 
 
-def _problems(rollouts: Rollouts, noise: Noise, shift: int = 0, looser: float = 1.0) -> Prepared:
+def _problems(
+    rollouts: Rollouts,
+    noise: Noise,
+    shift: int = 0,
+    looser: float = 1.0,
+    likely: tuple[float, ...] = (),
+) -> Prepared:
     segments = rollouts.segments
     usable = [(s.time > SETTLING) & (s.time < s.time[-1] - ENDING) for s in segments]
     held = held_out(segments, shift)
     moving = tolerances(rollouts.instrument, looser)
+    if likely:
+        moving = tuple(
+            replace(t, axis=replace(t.axis, likely=z)) for t, z in zip(moving, likely, strict=True)
+        )
     return Prepared(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
@@ -171,6 +192,7 @@ def _problems(rollouts: Rollouts, noise: Noise, shift: int = 0, looser: float = 
         noise,
         shift,
         looser,
+        likely,
     )
 
 

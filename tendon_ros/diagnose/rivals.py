@@ -70,8 +70,8 @@ def bared(problem: Problem, state: Fit, k: int) -> Fit | None:
     known = problem.slopes(state)
     nothing = np.zeros(len(left))
     slope = np.stack([known.get(label, nothing) for label in problem.labels(rest)], axis=1)
-    x = problem.pack(rest)
-    return Fit(rest, left, slope, float(left @ left + problem.prior(rest) @ x**2))
+    held = problem.prior(rest) @ problem.off(rest) ** 2
+    return Fit(rest, left, slope, float(left @ left + held))
 
 
 def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Rival]) -> list[Rival]:

@@ -13,6 +13,7 @@ import time
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
+from tendon_ros.diagnose.alike import leaning
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words
@@ -97,6 +98,7 @@ def diagnose(
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds)
+    ready = leaning(ready, candidates)
     ready, found = _searched(ready, candidates, jobs, report, memory, patience)
     problem = ready.problem
     report('judging', 0.85)

@@ -74,7 +74,7 @@ def told(problem: Problem, fit: Fit) -> tuple[Told, ...]:
 def _alone(problem: Problem, fit: Fit) -> Fit:
     """Return a fit moved by one step to where the samples of a problem want it."""
     x = problem.pack(fit.model)
-    pull = fit.slope.T @ fit.left + problem.prior(fit.model) * x
+    pull = fit.slope.T @ fit.left + problem.prior(fit.model) * problem.off(fit.model)
     free = problem.free(fit)
     step = -(problem.covariance(fit, free) @ (pull * free)) * free
     ends = np.array([axis.ends for axis in problem.axes(fit.model)]).reshape(-1, 2)

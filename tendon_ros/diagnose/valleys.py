@@ -37,8 +37,8 @@ def started(steps: Steps) -> Fit:
     :return: the fit from the file's own numbers, or from far off where that leaves much less.
     """
     problem = steps.problem
-    near = steps.settled(problem.empty)
-    far = from_afar(steps, problem.empty)
+    near = steps.settled(problem.begun)
+    far = from_afar(steps, problem.begun)
     if far is None:
         return near
     # what neighbouring bins share is what a better place would take away

@@ -29,6 +29,31 @@ FAR, EACH = 20.0, 3.0
 TRIED, KEPT = 256, 6
 
 
+def swings(problem: Problem) -> bool:
+    """
+    Return whether a torque drives the model, which then swings as its numbers say.
+
+    :param problem: the data.
+    :return: whether.
+    """
+    return any(d.by_torque for d in drives(problem.rollouts.instrument))
+
+
+def kinds_of(problem: Problem) -> dict[int, str]:
+    """
+    Return which guesses move together.
+
+    :param problem: the data.
+    :return: by number of the tolerance its kind; where motion drives the model each is its own.
+    """
+    by_torque = swings(problem)
+    return {
+        n: t.quantity if by_torque else f'{t.place}.{t.quantity}'
+        for n, t in enumerate(problem.tolerances)
+        if t.guessed and not t.given
+    }
+
+
 def afar(problem: Problem, model: Model) -> list[Model]:
     """
     Return where fits of the guesses may begin.
@@ -38,16 +63,10 @@ def afar(problem: Problem, model: Model) -> list[Model]:
     :return: the same with guesses moved, what leaves least first; none where all motions are known
         (what is left is then nearly linear in the guesses), or nothing is guessed.
     """
-    instrument = problem.rollouts.instrument
-    by_torque = any(d.by_torque for d in drives(instrument))
-    if not by_torque and not instrument.inner:
+    by_torque = swings(problem)
+    if not by_torque and not problem.rollouts.instrument.inner:
         return []
-    # which number of a point moves which tolerance
-    names = {
-        n: t.quantity if by_torque else f'{t.place}.{t.quantity}'
-        for n, t in enumerate(problem.tolerances)
-        if t.guessed and not t.given
-    }
+    names = kinds_of(problem)
     kinds = sorted(set(names.values()))
     if not kinds:
         return []
@@ -61,7 +80,7 @@ def afar(problem: Problem, model: Model) -> list[Model]:
         factors = dict(zip(kinds, np.exp(reach * (2.0 * point - 1.0)).tolist(), strict=True))
         places = model.moved.copy()
         for n, name in names.items():
-            places[n] = _place(problem.tolerances[n].axis, factors[name])
+            places[n] = placed(problem.tolerances[n].axis, factors[name])
         return replace(model, moved=places)
 
     models = [moved(point) for point in points]
@@ -96,8 +115,14 @@ def aside(problem: Problem, model: Model) -> list[Model]:
     return found
 
 
-def _place(axis: Axis, factor: float) -> float:
-    """Return the place at which a number is a factor times what the file says."""
+def placed(axis: Axis, factor: float) -> float:
+    """
+    Return the place at which a number is a factor times what the file says.
+
+    :param axis: of a guess.
+    :param factor: above zero.
+    :return: the place on the axis.
+    """
     if axis.log:
         return axis.place(factor * axis.centre)
     # what is added to a number that must not become negative

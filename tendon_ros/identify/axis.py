@@ -15,7 +15,8 @@ class Axis:
 
     ``centre`` is where z = 0, ``scale`` what z = 1 adds, or the logarithm of what it multiplies
     with where ``log``. ``spread`` is the standard deviation of z before any data; infinite where
-    nothing is known. ``repeated``: that counts as often as bins repeat each other.
+    nothing is known, and ``likely`` the place around which it is. ``repeated``: that counts as
+    often as bins repeat each other.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Axis:
     log: bool = False
     spread: float = math.inf
     repeated: bool = True
+    likely: float = 0.0
 
     def value(self, z: float) -> float:
         """

@@ -26,10 +26,11 @@ class Beside:
         prior = problem.prior(fit.model)
         ends = np.array([axis.ends for axis in problem.axes(fit.model)]).reshape(-1, 2).T
         self._slope = fit.slope
-        self._held = prior * x**2
+        off = problem.off(fit.model)
+        self._held = prior * off**2
         self._left = fit.left
         self._products = fit.slope.T @ fit.slope + np.diag(prior)
-        self._pull = fit.slope.T @ fit.left + prior * x
+        self._pull = fit.slope.T @ fit.left + prior * off
         self._bounds = np.stack([ends[0] - x, ends[1] - x])
         self._alone = self._solved(self._products, self._pull, self._bounds)[0]
 

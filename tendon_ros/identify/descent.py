@@ -36,6 +36,7 @@ class Descent:
 
     :param left: what unknowns leave of each sample, in noise deviations.
     :param prior: what a deviation of each unknown costs, by its square, shape (unknowns,).
+    :param likely: from where deviations count, shape (unknowns,).
     :param bounds: of the unknowns, shape (unknowns, 2).
     :param still: which do not move, shape (unknowns,).
     """
@@ -44,11 +45,13 @@ class Descent:
         self,
         left: Callable[[FloatArray], FloatArray],
         prior: FloatArray,
+        likely: FloatArray,
         bounds: FloatArray,
         still: NDArray[np.bool_],
     ) -> None:
         self._left = left
         self._prior = prior
+        self._likely = likely
         self._bounds = bounds
         self._still = still
         self._damping = 1e-3
@@ -61,7 +64,7 @@ class Descent:
         :return: with its cost, infinite where the model cannot be computed.
         """
         left = self._left(x)
-        return Place(x, left, float(left @ left + self._prior @ x**2))
+        return Place(x, left, float(left @ left + self._prior @ (x - self._likely) ** 2))
 
     def step(self, place: Place, slope: FloatArray, tries: int, gain: float) -> Place:
         """
@@ -74,7 +77,7 @@ class Descent:
         :return: a better place; the same one where no step promises enough or keeps what it does.
         """
         normal = slope.T @ slope + np.diag(self._prior)
-        gradient = slope.T @ place.left + self._prior * place.x
+        gradient = slope.T @ place.left + self._prior * (place.x - self._likely)
         scale = np.diag(np.diag(normal)) + 1e-9 * np.eye(len(place.x))
         low, high = self._bounds.T
         # unknowns pressed against a bound stay there

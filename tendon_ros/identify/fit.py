@@ -60,9 +60,8 @@ class Problem(Slopes):
         :return: shape (unknowns,).
         """
         x = self.pack(fit.model)
-        return unpressed(
-            x, self._bounds(fit.model), fit.slope.T @ fit.left + self.prior(fit.model) * x
-        )
+        pull = fit.slope.T @ fit.left + self.prior(fit.model) * self.off(fit.model)
+        return unpressed(x, self._bounds(fit.model), pull)
 
     def centred(self, fit: Fit) -> Fit:
         """
@@ -209,6 +208,7 @@ class Problem(Slopes):
         return Descent(
             lambda x: self.left(self.unpack(model, x)),
             self.prior(model),
+            self.likely(model),
             self._bounds(model),
             self.still(model),
         )

@@ -7,6 +7,7 @@ Channels and recordings lie one after the other in one vector, so that fits need
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Self
 
@@ -87,6 +88,11 @@ class Residuals:
     def empty(self) -> Model:
         """The instrument file as it is."""
         return Model((), (), {}, np.zeros(len(self.tolerances)))
+
+    @property
+    def begun(self) -> Model:
+        """The instrument with its numbers where they are likely to be, from which fits begin."""
+        return replace(self.empty, moved=np.array([t.axis.likely for t in self.tolerances]))
 
     def uses(self, model: Model) -> list[list[EffectUse]]:
         """

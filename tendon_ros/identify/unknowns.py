@@ -15,7 +15,7 @@ from tendon_ros.identify.residuals import Residuals
 
 FloatArray = NDArray[np.float64]
 
-#: time over which what is left remembers itself [s]: so many bins count as one against a prior
+#: time over which what is left remembers itself [s]: so many values count as one against a prior
 REMEMBERED = 0.4
 
 
@@ -53,12 +53,20 @@ class Unknowns(Residuals):
         tremble until it lets go of whatever it is not.
 
         :param model: whose unknowns.
-        :return: by its square on the axis, shape (unknowns,).
+        :return: by the square of how far it is off, shape (unknowns,).
         """
-        repeated = max(1.0, REMEMBERED / self.rollouts.segments[0].period)
+        repeated = max(1.0, REMEMBERED / self.rollouts.segments[0].spacing)
         return np.array(
             [(repeated if a.repeated else 1.0) * a.spread**-2 for a in self.axes(model)]
         )
+
+    def likely(self, model: Model) -> FloatArray:
+        """Return where each unknown is likely to be before any data, shape (unknowns,)."""
+        return np.array([a.likely for a in self.axes(model)])
+
+    def off(self, model: Model) -> FloatArray:
+        """Return how far each unknown is from there, on its axis, shape (unknowns,)."""
+        return self.pack(model) - self.likely(model)
 
     def still(self, model: Model) -> NDArray[np.bool_]:
         """Return which unknowns do not move: tolerances that a cause owns, shape (unknowns,)."""

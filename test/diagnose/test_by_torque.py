@@ -1,7 +1,5 @@
 """A rig without any motor encoder: driven by its torques, its guesses found with the cause."""
 
-from pathlib import Path
-
 import pytest
 
 from tendon_ros.bags.importing import import_runs
@@ -11,14 +9,13 @@ from tendon_ros.base.resources import config_path
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
 EARLY = 6.0  # [s]
-TABLE = Path(__file__).parents[2] / 'docs' / 'rigs' / 'belt_by_voltage.csv'
 
 
 @pytest.fixture(scope='module')
-def outcome(quick):
+def outcome(quick, by_voltage):
     """Return what is said of the first seconds of the tutorial's recording."""
     mapping = load_mapping(config_path('imports/belt_by_voltage.yaml'))
-    [run] = import_runs(TABLE, mapping)
+    [run] = import_runs(by_voltage, mapping)
     early = [
         Channel(c.name, c.time[c.time < EARLY], c.value[c.time < EARLY])
         for c in run.channels.values()

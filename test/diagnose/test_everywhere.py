@@ -111,3 +111,25 @@ def test_of_causes_that_undo_each_other_one_goes_first(measured_on):
     assert kept is not None
     assert Candidate(*friction[:2]) in kept.model.causes
     assert len(kept.model.causes) == 2
+
+
+def test_what_torque_drives_is_begun_from_afar(far_off_belt):
+    """The file has the belt ten times too soft and motors that are three times too heavy."""
+    problem = far_off_belt
+    belt = problem.rollouts.instrument
+    candidates = everyone(belt, [s.channel for s in belt.sensors])
+    sign = Candidate('sensor_rectified', 'speed_roller')
+    without_sign = problem.empty.joined(sign, {'rectified': 1.0})
+    steps = Steps(problem, candidates, 1, lambda *_: None)
+    fit = thinned_out(steps, problem.fitted(problem.empty), 6, without_sign)
+    found = {
+        (t.place, t.quantity): t.axis.value(float(z))
+        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
+    }
+    # in proportion to the torque, of which the unit is guessed as well
+    spans = found['cable_upper', 'stiffness'] * found['cable_lower', 'stiffness']
+    assert 5.0 < np.sqrt(spans) / found['motor_left', 'torque_gain'] < 20.0
+    for motor in ('left', 'right'):
+        heavy = found[f'pulley_{motor}', 'inertia'] / found[f'motor_{motor}', 'torque_gain']
+        assert 0.2 < heavy < 0.45
+    assert fit.cost < 0.1 * problem.fitted(without_sign, rounds=20).cost

@@ -26,23 +26,34 @@ def descended(descent, x, rounds=60):
 
 
 def test_the_end_of_a_curved_valley_is_reached():
-    end = descended(Descent(valley, np.zeros(2), FAR, NONE), [-1.2, 1.0])
+    end = descended(Descent(valley, np.zeros(2), np.zeros(2), FAR, NONE), [-1.2, 1.0])
     assert end.x == pytest.approx([1.0, 1.0], abs=1e-6)
     assert end.cost == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_prior_holds_back_as_much_as_it_says():
     # (x - 3)^2 + 2 x^2 is least at 1
-    descent = Descent(lambda x: x[:1] - 3.0, np.array([2.0, 1.0]), FAR, NONE)
+    descent = Descent(lambda x: x[:1] - 3.0, np.array([2.0, 1.0]), np.zeros(2), FAR, NONE)
     end = descent.step(descent.at(np.zeros(2)), np.array([[1.0, 0.0]]), 1, 1e-12)
     assert end.x == pytest.approx([1.0, 0.0], rel=1e-2)
 
 
+def test_a_prior_counts_from_what_is_likely():
+    # (x - 3)^2 + 2 (x - 6)^2 is least at 5
+    likely = np.array([6.0, 0.0])
+    descent = Descent(lambda x: x[:1] - 3.0, np.array([2.0, 1.0]), likely, FAR, NONE)
+    end = descent.step(descent.at(np.zeros(2)), np.array([[1.0, 0.0]]), 1, 1e-12)
+    assert end.x == pytest.approx([5.0, 0.0], rel=1e-2)
+    assert end.cost == pytest.approx(6.0, rel=1e-2)
+
+
 def test_bounds_and_what_stays_are_kept():
     narrow = np.array([[-9.0, 0.5], [-9.0, 9.0]])
-    end = descended(Descent(valley, np.zeros(2), narrow, NONE), [0.0, 0.0])
+    end = descended(Descent(valley, np.zeros(2), np.zeros(2), narrow, NONE), [0.0, 0.0])
     assert end.x == pytest.approx([0.5, 0.25], abs=1e-6)
-    held = descended(Descent(valley, np.zeros(2), FAR, np.array([False, True])), [0.0, 0.0])
+    held = descended(
+        Descent(valley, np.zeros(2), np.zeros(2), FAR, np.array([False, True])), [0.0, 0.0]
+    )
     assert held.x[1] == 0.0
     assert 0.0 < held.x[0] < 0.5
 
@@ -61,14 +72,15 @@ def test_a_step_that_promises_too_little_is_not_tried():
         asked.append(x)
         return valley(x)
 
-    descent = Descent(counted, np.zeros(2), FAR, NONE)
+    descent = Descent(counted, np.zeros(2), np.zeros(2), FAR, NONE)
     place = descent.at(np.array([-1.2, 1.0]))
     assert descent.step(place, slopes(place.x), TRIES[0], 10.0) is place
     assert len(asked) == 1
 
 
 def test_no_step_leads_to_where_nothing_can_be_computed():
-    descent = Descent(lambda x: np.where(x > 0.5, np.inf, x - 2.0), np.zeros(2), FAR, NONE)
+    nothing = np.zeros(2), np.zeros(2)
+    descent = Descent(lambda x: np.where(x > 0.5, np.inf, x - 2.0), *nothing, FAR, NONE)
     place = descent.at(np.zeros(2))
     end = descent.step(place, np.eye(2), TRIES[0], 1e-12)
     assert end is place or (np.isfinite(end.cost) and end.cost < place.cost)
@@ -76,7 +88,7 @@ def test_no_step_leads_to_where_nothing_can_be_computed():
 
 
 def test_derivatives_that_follow_tell_what_the_step_has_changed():
-    descent = Descent(valley, np.zeros(2), FAR, NONE)
+    descent = Descent(valley, np.zeros(2), np.zeros(2), FAR, NONE)
     before, after = descent.at(np.array([-1.0, 0.5])), descent.at(np.array([-0.6, 0.1]))
     slope = slopes(before.x)
     way = after.x - before.x
@@ -92,7 +104,7 @@ def test_derivatives_that_follow_tell_what_the_step_has_changed():
 
 def test_following_derivatives_need_fewer_to_be_taken():
     def taken(steps):
-        descent = Descent(valley, np.zeros(2), FAR, NONE)
+        descent = Descent(valley, np.zeros(2), np.zeros(2), FAR, NONE)
         place = descent.at(np.array([-1.2, 1.0]))
         for count in range(1, 100):
             slope = slopes(place.x)
@@ -107,7 +119,7 @@ def test_following_derivatives_need_fewer_to_be_taken():
 
 
 def test_a_place_knows_its_cost():
-    descent = Descent(valley, np.array([2.0, 0.0]), FAR, NONE)
+    descent = Descent(valley, np.array([2.0, 0.0]), np.zeros(2), FAR, NONE)
     place = descent.at(np.array([2.0, 4.0]))
     assert isinstance(place, Place)
     assert place.cost == pytest.approx(1.0 + 8.0)

@@ -1,0 +1,50 @@
+"""
+Where guesses are likely to be where torque drives a body of which hardly anything is known.
+
+Two motors of which the file guesses the same are alike, and wrong by the same factor. What of one
+sensor alone was seen leaves them free to be as different as they like, as long as one makes up for
+the other; so guesses count as wrong by as much as they differ from what one factor for all of a
+kind has found, not from the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from tendon_ros.diagnose.asking import may_be_signless
+from tendon_ros.diagnose.everywhere import everywhere
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.effects import find
+from tendon_ros.identify.afar import kinds_of, swings
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.tied import tied
+
+
+def leaning(ready: Prepared, candidates: Sequence[Candidate]) -> Prepared:
+    """
+    Return a problem whose guesses lean towards one factor for all of a kind.
+
+    :param ready: the problem.
+    :param candidates: all that may be named: all that usually rubs is there, and a sensor that may
+        have lost its sign may have.
+    :return: the same where motion drives the model, or nothing is guessed.
+    """
+    problem = ready.problem
+    if not (swings(problem) and kinds_of(problem)):
+        return ready
+    known = [problem.empty]
+    known += [
+        problem.empty.joined(c, find(c.effect).typical)
+        for c in candidates
+        if may_be_signless(problem, c)
+    ]
+    begun = [tied(problem, partial(everywhere, candidates, model))[:1] for model in known]
+
+    def left(model: Model) -> float:
+        rest = problem.left(model)
+        return float(rest @ rest)
+
+    best = min((model for first in begun for model in first), key=left, default=None)
+    return ready if best is None else ready.leaning(best.moved.tolist())

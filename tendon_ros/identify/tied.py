@@ -1,0 +1,78 @@
+"""
+Where fits begin if torque drives a body of which hardly anything is known: what is alike is tied.
+
+Friction, inertia, damping, stiffness and torque constant of a body that a torque swings have to be
+right together, or nothing fits at all; each on its own ends in a valley where one motor is heavy
+and its twin is light. So all guesses of a kind move by one factor first, and all that rubs by
+another: a handful of unknowns, which can be looked over and then fitted from the best places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.stats import qmc
+
+from tendon_ros.identify.afar import FAR, kinds_of, placed
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Problem
+
+FloatArray = NDArray[np.float64]
+
+#: parts of what is typical that rubs: from hardly any to all of it
+LEAST, MOST = 3e-3, 1.0
+#: places that are tried, and from which fits go on
+TRIED, FITTED = 256, 8
+#: rounds of such a fit, and its step for derivatives, relative
+ROUNDS, STEP = 15, 0.02
+#: noise deviations at which one sample says no more
+OUTLYING = 200.0
+
+
+def tied(problem: Problem, of_size: Callable[[float], Model]) -> list[Model]:
+    """
+    Return where fits of guesses and of all that rubs may begin.
+
+    :param problem: the data.
+    :param of_size: returns the model with causes of a part of what is typical.
+    :return: models with guesses of a kind moved alike, what leaves least first; those that cannot
+        be computed are left out.
+    """
+    names = kinds_of(problem)
+    kinds = sorted(set(names.values()))
+    low = np.array([*[-np.log(FAR)] * len(kinds), np.log(LEAST)])
+    high = np.array([*[np.log(FAR)] * len(kinds), np.log(MOST)])
+    points = qmc.scale(qmc.Halton(len(low), scramble=False).random(TRIED), low, high)
+
+    def model(x: FloatArray) -> Model:
+        factors = dict(zip(kinds, np.exp(x).tolist(), strict=False))
+        begun = of_size(float(np.exp(x[-1])))
+        places = begun.moved.copy()
+        for n, kind in names.items():
+            places[n] = placed(problem.tolerances[n].axis, factors[kind])
+        return replace(begun, moved=places)
+
+    def left(x: FloatArray) -> FloatArray:
+        found = np.nan_to_num(problem.left(model(x)), nan=OUTLYING)
+        return np.clip(found, -OUTLYING, OUTLYING)
+
+    def slope(x: FloatArray) -> FloatArray:
+        here = left(x)
+        return np.stack([(left(x + row) - here) / STEP for row in STEP * np.eye(len(x))], axis=1)
+
+    def cost(n: int) -> FloatArray:
+        return np.array(np.sum(left(points[n]) ** 2))
+
+    def fitted(n: int) -> FloatArray:
+        fit = least_squares(left, points[n], slope, bounds=(low, high), max_nfev=ROUNDS)
+        return np.array([fit.cost, *fit.x])
+
+    costs = np.array(problem.rollouts.each(cost, range(TRIED)))
+    best = np.argsort(costs, kind='stable')[:FITTED].tolist()
+    rows = sorted(problem.rollouts.each(fitted, best), key=lambda row: float(row[0]))
+    models = [model(row[1:]) for row in rows]
+    return [m for m in models if np.isfinite(problem.left(m)).all()]

@@ -1,0 +1,76 @@
+"""Guesses of a kind lean towards one factor where torque drives, and nowhere else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.bags.importing import import_runs
+from tendon_ros.bags.mapping import load_mapping
+from tendon_ros.base.resources import config_path
+from tendon_ros.diagnose.alike import leaning
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.afar import kinds_of
+from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.driving import as_recorded
+from tendon_ros.model.instrument import Curve
+from tendon_ros.model.instrument_file import load_instrument
+
+SOFT = 0.15  # times the stiffness that the tutorial guesses
+
+
+@pytest.fixture(scope='module')
+def ready(by_voltage):
+    [run] = import_runs(by_voltage, load_mapping(config_path('imports/belt_by_voltage.yaml')))
+    belt = as_recorded(load_instrument('belt_by_voltage'), set(run.channels))
+    curves = tuple(
+        Curve(c.name, tuple(x / SOFT for x in c.elongation), c.tension) for c in belt.curves
+    )
+    return prepared([run], replace(belt, curves=curves))
+
+
+@pytest.fixture(scope='module')
+def leant(ready):
+    belt = ready.problem.rollouts.instrument
+    return leaning(ready, everyone(belt, [s.channel for s in belt.sensors]))
+
+
+def test_guesses_of_a_kind_lean_towards_one_factor(ready, leant):
+    assert not ready.problem.begun.moved.any()
+    begun = leant.problem.begun.moved
+    factors = {}
+    for n, kind in kinds_of(leant.problem).items():
+        axis = leant.problem.tolerances[n].axis
+        if axis.log:
+            factors.setdefault(kind, set()).add(round(axis.value(float(begun[n])), 9))
+    assert all(len(found) == 1 for found in factors.values())
+    # in proportion to the torque, of which the unit is guessed as well
+    [stiff], [unit] = factors['stiffness'], factors['torque_gain']
+    assert 0.5 / SOFT < stiff / unit < 2.0 / SOFT
+    measured = [n for n in range(len(begun)) if n not in kinds_of(leant.problem)]
+    assert not begun[measured].any()
+
+
+def test_what_guesses_cost_counts_from_there(ready, leant):
+    there, file = (
+        leant.problem.fitted(m, rounds=0) for m in (leant.problem.begun, ready.problem.empty)
+    )
+    assert there.cost == pytest.approx(float(there.left @ there.left))
+    assert file.cost > float(file.left @ file.left)
+    # the gap is still that of the file
+    assert np.array_equal(
+        leant.problem.left(leant.problem.empty), ready.problem.left(ready.problem.empty)
+    )
+
+
+def test_it_is_not_forgotten_when_noise_or_blocks_change(leant):
+    for other in (leant.moved(1), leant.loosened(2.0), leant.heard_again(leant.problem.empty)):
+        assert np.array_equal(other.problem.begun.moved, leant.problem.begun.moved)
+        assert np.array_equal(other.held.begun.moved, leant.problem.begun.moved)
+
+
+def test_where_motion_drives_guesses_stay_with_the_file(measured_on):
+    axis = load_instrument('driven_axis')
+    ready = prepared([measured_on(axis)], axis)
+    assert any(t.guessed for t in ready.problem.tolerances)
+    assert leaning(ready, everyone(axis, [s.channel for s in axis.sensors])) is ready
