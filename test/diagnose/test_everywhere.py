@@ -128,7 +128,8 @@ def test_what_torque_drives_is_begun_from_afar(far_off_belt):
     }
     # in proportion to the torque, of which the unit is guessed as well
     spans = found['cable_upper', 'stiffness'] * found['cable_lower', 'stiffness']
-    assert 5.0 < np.sqrt(spans) / found['motor_left', 'torque_gain'] < 20.0
+    # the file holds them back where guesses do not lean elsewhere
+    assert 3.0 < np.sqrt(spans) / found['motor_left', 'torque_gain'] < 20.0
     for motor in ('left', 'right'):
         heavy = found[f'pulley_{motor}', 'inertia'] / found[f'motor_{motor}', 'torque_gain']
         assert 0.2 < heavy < 0.45
