@@ -28,6 +28,7 @@ from tendon_ros.diagnose.rivals import (
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.valleys import nudged
 from tendon_ros.diagnose.worth import hopeless
+from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
@@ -164,7 +165,8 @@ class Challenge:
         if not brief:
             begun += self._begun.elsewhere(found.final, cause, among)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
-        if not brief:
+        # of a speed alone, one dry friction is as good as another: that is to be said
+        if not brief or swings(self._problem):
             begun = self._begun.beside_the_others(found.final, cause, without, rivals)
             rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         rivals = sharpened(self._steps, found.final, without, rivals, BRIEFLY if brief else CLOSE)

@@ -133,4 +133,4 @@ def test_what_torque_drives_is_begun_from_afar(far_off_belt):
     for motor in ('left', 'right'):
         heavy = found[f'pulley_{motor}', 'inertia'] / found[f'motor_{motor}', 'torque_gain']
         assert 0.2 < heavy < 0.45
-    assert fit.cost < 0.1 * problem.fitted(without_sign, rounds=20).cost
+    assert fit.cost < 0.2 * problem.fitted(without_sign, rounds=20).cost
