@@ -18,7 +18,6 @@ from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.effects import find
 from tendon_ros.identify.afar import kinds_of, swings
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.tied import tied
 
 
@@ -41,10 +40,6 @@ def leaning(ready: Prepared, candidates: Sequence[Candidate]) -> Prepared:
         if may_be_signless(problem, c)
     ]
     begun = [tied(problem, partial(everywhere, candidates, model))[:1] for model in known]
-
-    def left(model: Model) -> float:
-        rest = problem.left(model)
-        return float(rest @ rest)
-
-    best = min((model for first in begun for model in first), key=left, default=None)
-    return ready if best is None else ready.leaning(best.moved.tolist())
+    fits = [problem.fitted(model, rounds=0) for first in begun for model in first]
+    best = min(fits, key=lambda fit: fit.cost, default=None)
+    return ready if best is None else ready.leaning(best.model.moved.tolist())

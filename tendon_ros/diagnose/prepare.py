@@ -141,6 +141,28 @@ class Prepared:
         """
         return _problems(self.whole.rollouts, self.noise, self.shift, self.looser, tuple(likely))
 
+    def unleant(self) -> Prepared:
+        """
+        Return the same where numbers lean on nothing.
+
+        What a search has made likely is no knowledge, and makes no interval narrower.
+
+        :return: the problems; these where no number leans.
+        """
+        if not self.likely:
+            return self
+
+        def free(problem: Problem) -> Problem:
+            moving = [
+                replace(t, axis=replace(t.axis, repeated=False)) if t.guessed else t
+                for t in problem.tolerances
+            ]
+            return problem.toleranced(moving)
+
+        return replace(
+            self, problem=free(self.problem), held=free(self.held), whole=free(self.whole)
+        )
+
 
 def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int = 1) -> Prepared:
     """

@@ -113,7 +113,7 @@ def diagnose(
     # where there is no gap, there is nothing that anything could stand in for
     kept = held.kept if held.named or beyond >= NAMED else ()
     model = held.model(found, kept)
-    heard = ready.heard_again(model)
+    heard = ready.heard_again(model).unleant()
     final = heard.problem.centred(heard.problem.fitted(model, rounds=6, accuracy=1e-4))
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)

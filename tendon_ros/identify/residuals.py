@@ -74,6 +74,15 @@ class Residuals:
         rollouts = self.rollouts.like([self._segments[n] for n in picked], roughest)
         return type(self)(rollouts, self.tolerances, [self._used[n] for n in picked])
 
+    def toleranced(self, tolerances: Sequence[Tolerance]) -> Self:
+        """
+        Return the same data with other tolerances.
+
+        :param tolerances: what may move.
+        :return: the problem.
+        """
+        return type(self)(self.rollouts, tolerances, self._used)
+
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:
         """Which samples count: one (channels, bins) a segment."""

@@ -39,8 +39,8 @@ def tied(problem: Problem, of_size: Callable[[float], Model]) -> list[Model]:
 
     :param problem: the data.
     :param of_size: returns the model with causes of a part of what is typical.
-    :return: models with guesses of a kind moved alike, what leaves least first; those that cannot
-        be computed are left out.
+    :return: models with guesses of a kind moved alike, what leaves least first, what they cost
+        counted; those that cannot be computed are left out.
     """
     names = kinds_of(problem)
     kinds = sorted(set(names.values()))
@@ -69,10 +69,11 @@ def tied(problem: Problem, of_size: Callable[[float], Model]) -> list[Model]:
 
     def fitted(n: int) -> FloatArray:
         fit = least_squares(left, points[n], slope, bounds=(low, high), max_nfev=ROUNDS)
-        return np.array([fit.cost, *fit.x])
+        return np.asarray(fit.x)
 
     costs = np.array(problem.rollouts.each(cost, range(TRIED)))
     best = np.argsort(costs, kind='stable')[:FITTED].tolist()
-    rows = sorted(problem.rollouts.each(fitted, best), key=lambda row: float(row[0]))
-    models = [model(row[1:]) for row in rows]
-    return [m for m in models if np.isfinite(problem.left(m)).all()]
+    models = [model(x) for x in problem.rollouts.each(fitted, best)]
+    # of places that the data hardly tell apart, the one nearer to the file
+    begun = sorted((problem.fitted(m, rounds=0) for m in models), key=lambda fit: fit.cost)
+    return [fit.model for fit in begun if np.isfinite(fit.cost)]
