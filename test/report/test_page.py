@@ -55,7 +55,7 @@ def test_table_has_its_rows_and_marks():
     assert re.search(r'<tr class="bad">\s*<td data-title="a">3</td>', text)
     assert '<td class="mark" data-title="c">not</td>' in text
     assert 'class="cards"' not in text
-    wide = Table(tuple('abcde'), (tuple('12345'),))
+    wide = Table(tuple('abcd'), (tuple('1234'),))
     assert 'class="cards"' in html(Page('wide', (), (Section('s', (wide,)),)))
 
 
