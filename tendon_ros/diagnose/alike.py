@@ -15,24 +15,29 @@ from functools import partial
 from tendon_ros.diagnose.asking import may_be_signless
 from tendon_ros.diagnose.everywhere import everywhere
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.steps import Report
 from tendon_ros.effects import find
 from tendon_ros.identify.afar import kinds_of, swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.tied import tied
 
 
-def leaning(ready: Prepared, candidates: Sequence[Candidate]) -> Prepared:
+def leaning(
+    ready: Prepared, candidates: Sequence[Candidate], report: Report = lambda _what, _done: None
+) -> Prepared:
     """
     Return a problem whose guesses lean towards one factor for all of a kind.
 
     :param ready: the problem.
     :param candidates: all that may be named: all that usually rubs is there, and a sensor that may
         have lost its sign may have.
+    :param report: called with what is being done and the part that is done.
     :return: the same where motion drives the model, or nothing is guessed.
     """
     problem = ready.problem
     if not (swings(problem) and kinds_of(problem)):
         return ready
+    report('looking over what is guessed', 0.0)
     known = [problem.empty]
     known += [
         problem.empty.joined(c, find(c.effect).typical)

@@ -98,7 +98,7 @@ def diagnose(
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds)
-    ready = leaning(ready, candidates)
+    ready = leaning(ready, candidates, report)
     ready, found = _searched(ready, candidates, jobs, report, memory, patience)
     problem = ready.problem
     report('judging', 0.85)

@@ -32,7 +32,12 @@ def ready(by_voltage):
 @pytest.fixture(scope='module')
 def leant(ready):
     belt = ready.problem.rollouts.instrument
-    return leaning(ready, everyone(belt, [s.channel for s in belt.sensors]))
+    said = []
+    found = leaning(
+        ready, everyone(belt, [s.channel for s in belt.sensors]), lambda *s: said.append(s)
+    )
+    assert said == [('looking over what is guessed', 0.0)]
+    return found
 
 
 def test_guesses_of_a_kind_lean_towards_one_factor(ready, leant):
