@@ -12,11 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from tendon_ros.diagnose.asking import may_be_signless
+from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.everywhere import everywhere
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.steps import Report
-from tendon_ros.effects import find
 from tendon_ros.identify.afar import kinds_of, swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.tied import tied
@@ -38,13 +37,7 @@ def leaning(
     if not (swings(problem) and kinds_of(problem)):
         return ready
     report('looking over what is guessed', 0.0)
-    known = [problem.empty]
-    known += [
-        problem.empty.joined(c, find(c.effect).typical)
-        for c in candidates
-        if may_be_signless(problem, c)
-    ]
-    begun = [tied(problem, partial(everywhere, candidates, model))[:1] for model in known]
-    fits = [problem.fitted(model, rounds=0) for first in begun for model in first]
-    best = min(fits, key=lambda fit: fit.cost, default=None)
-    return ready if best is None else ready.leaning(best.model.moved.tolist())
+    known = [problem.empty, *(lost(problem.empty, c) for c in signless(problem, candidates))]
+    begun = [m for model in known for m in tied(problem, partial(everywhere, candidates, model))]
+    best = min(begun, key=problem.cost, default=None)
+    return ready if best is None else ready.leaning(best.moved.tolist())

@@ -8,6 +8,7 @@ import numpy as np
 
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.screening import Proposal
 
@@ -34,6 +35,28 @@ def asked_again(
     )
 
 
+def lost(model: Model, candidate: Candidate) -> Model:
+    """
+    Return a model in which a sensor knows no sign.
+
+    :param model: in which it does.
+    :param candidate: the lost sign.
+    :return: the larger model.
+    """
+    return model.joined(candidate, find(candidate.effect).typical)
+
+
+def signless(problem: Problem, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """
+    Return the lost signs among candidates, of sensors that may have lost theirs.
+
+    :param problem: the data.
+    :param candidates: all that may be named.
+    :return: those.
+    """
+    return [c for c in candidates if may_be_signless(problem, c)]
+
+
 def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
     """
     Return whether a candidate is a lost sign, and of a sensor that may have lost it.
@@ -54,5 +77,5 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
     read = np.concatenate(values) if values else np.zeros(0)
     if not read.size or float(read.min()) <= -BELOW * float(np.ptp(read)):
         return False
-    lost = problem.empty.joined(candidate, find(candidate.effect).typical)
-    return not np.allclose(problem.left(lost), problem.left(problem.empty))
+    without = lost(problem.empty, candidate)
+    return not np.allclose(problem.left(without), problem.left(problem.empty))

@@ -124,12 +124,7 @@ class Begun:
             for part in LESS
         ]
 
-        def cost(values: dict[str, float]) -> float:
-            left = self._problem.left(rest.joined(proposal.candidate, values))
-            found = float(left @ left)
-            return found if math.isfinite(found) else math.inf
-
-        return min(tried, key=cost)
+        return min(tried, key=lambda v: self._problem.cost(rest.joined(proposal.candidate, v)))
 
     def _instead(
         self,

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tendon_ros.diagnose.asking import may_be_signless
+from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.guesses import astray, better, far_off
 from tendon_ros.diagnose.rounds import MOST, Round
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.valleys import from_afar, SETTLED
 from tendon_ros.diagnose.worth import hopeless, outweighed
-from tendon_ros.effects import find
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen, Seen
@@ -64,15 +63,13 @@ class FirstRound:
     def _without_sign(self) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
-        for candidate in self._steps.candidates:
-            if may_be_signless(self.problem, candidate):
-                lost = find(candidate.effect).typical
-                alone = self.problem.begun.joined(candidate, lost)
-                fits += [
-                    from_afar(self._steps, self._start.model.joined(candidate, lost)),
-                    self._of_many(alone),
-                    self._from_the_file(alone),
-                ]
+        for candidate in signless(self.problem, self._steps.candidates):
+            alone = lost(self.problem.begun, candidate)
+            fits += [
+                from_afar(self._steps, lost(self._start.model, candidate)),
+                self._of_many(alone),
+                self._from_the_file(alone),
+            ]
         believed = [fit for fit in fits if fit and self._usual.believes(self._start, fit)]
         return better(self.problem, *believed)
 

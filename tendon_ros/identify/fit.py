@@ -52,6 +52,16 @@ class Fit:
 class Problem(Slopes):
     """The recordings as a least-squares problem."""
 
+    def cost(self, model: Model) -> float:
+        """
+        Return the squares of what a model leaves and of its priors, nothing fitted.
+
+        :param model: the model.
+        :return: the cost; infinite where the model cannot be computed.
+        """
+        cost = self._descent(model).at(self.pack(model)).cost
+        return cost if math.isfinite(cost) else math.inf
+
     def free(self, fit: Fit) -> NDArray[np.bool_]:
         """
         Return which unknowns of a fit can still move: those that no bound holds back.

@@ -64,16 +64,16 @@ def tied(problem: Problem, of_size: Callable[[float], Model]) -> list[Model]:
         here = left(x)
         return np.stack([(left(x + row) - here) / STEP for row in STEP * np.eye(len(x))], axis=1)
 
-    def cost(n: int) -> FloatArray:
+    def power(n: int) -> FloatArray:
         return np.array(np.sum(left(points[n]) ** 2))
 
     def fitted(n: int) -> FloatArray:
         fit = least_squares(left, points[n], slope, bounds=(low, high), max_nfev=ROUNDS)
         return np.asarray(fit.x)
 
-    costs = np.array(problem.rollouts.each(cost, range(TRIED)))
+    costs = np.array(problem.rollouts.each(power, range(TRIED)))
     best = np.argsort(costs, kind='stable')[:FITTED].tolist()
     models = [model(x) for x in problem.rollouts.each(fitted, best)]
     # of places that the data hardly tell apart, the one nearer to the file
-    begun = sorted((problem.fitted(m, rounds=0) for m in models), key=lambda fit: fit.cost)
-    return [fit.model for fit in begun if np.isfinite(fit.cost)]
+    begun = sorted(((problem.cost(m), m) for m in models), key=lambda pair: pair[0])
+    return [m for cost, m in begun if np.isfinite(cost)]
