@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from itertools import product
+from itertools import product, repeat
 from pathlib import Path
 
 import numpy as np
@@ -170,7 +171,8 @@ def main() -> None:
     wander = wandered([runs[key] for key in args.trained])
     print(f'the load wanders by {1e3 * wander:.0f} mN m in a second, in the runs of the diagnosis')
     for known, (name, channels) in product((None, wander), rig.ends.items()):
-        rows = [estimated(run, found, channels, known) for run in held]
+        with ProcessPoolExecutor() as pool:
+            rows = list(pool.map(estimated, held, repeat(found), repeat(channels), repeat(known)))
         inside = np.abs(np.concatenate([r[2] for r in rows])) < 1.96
         angle = [r[1] for r in rows]
         moving = [a - a.mean() for a in angle]  # the encoders' zeros jump between recordings

@@ -90,6 +90,10 @@ class Channel:
             quantity = self.name.rsplit('/', 1)[-1]
             object.__setattr__(self, 'unit', FIELD_UNITS.get(quantity, ''))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # else arrays could be written to where they arrive
+        return Channel, (self.name, self.time, self.value, self.unit)
+
     @property
     def sampling(self) -> float:
         """The usual spacing of stamps [s], of two samples and more."""
@@ -123,6 +127,11 @@ class Recording:
     def __post_init__(self) -> None:
         object.__setattr__(self, 'channels', MappingProxyType(dict(self.channels)))
         object.__setattr__(self, 'metadata', MappingProxyType(dict(self.metadata)))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # a view of a dictionary does not travel to other processes
+        own = self.name, dict(self.channels), self.epoch_ns, dict(self.metadata), self.warnings
+        return Recording, own
 
     def __getitem__(self, name: str) -> Channel:
         try:

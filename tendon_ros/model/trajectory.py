@@ -66,6 +66,10 @@ class Trajectory:
         object.__setattr__(self, 'time', time)
         object.__setattr__(self, 'position', MappingProxyType(columns))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # a view of a dictionary does not travel to other processes
+        return Trajectory, (self.name, self.time, dict(self.position))
+
     @property
     def motors(self) -> tuple[str, ...]:
         """Names of the motors, in the order of the columns."""

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -236,3 +237,14 @@ def test_a_motor_without_positions_is_named(rig):
     only = Trajectory('only', np.arange(2.0), {'M': np.zeros(2)})
     with pytest.raises(TrajectoryError, match='has positions of M, the instrument has'):
         simulate(rig, only)
+
+
+def test_a_trajectory_travels_to_another_process_unchanged():
+    sent = Trajectory('one', np.array([0.0, 1.0]), {'M': np.array([0.0, 0.5])})
+
+    got = pickle.loads(pickle.dumps(sent))
+
+    assert got.name == 'one'
+    np.testing.assert_array_equal(got.time, sent.time)
+    np.testing.assert_array_equal(got.position['M'], sent.position['M'])
+    assert not got.position['M'].flags.writeable
