@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.bags.mapping import Mapping, Time, unit_of
+from tendon_ros.bags.mapping import Mapping, Time
 from tendon_ros.bags.stamps import to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.quantity import factor
-from tendon_ros.base.recording import Channel, FloatArray, Recording
+from tendon_ros.base.recording import Channel, FloatArray, Recording, unit_of
 
 BoolArray = NDArray[np.bool_]
 

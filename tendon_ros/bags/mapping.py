@@ -46,7 +46,7 @@ import yaml
 from tendon_ros.bags.topics import place_of
 from tendon_ros.base.errors import listed, RecordingError, TendonError
 from tendon_ros.base.quantity import factor
-from tendon_ros.base.recording import FIELD_UNITS
+from tendon_ros.base.recording import unit_of
 from tendon_ros.base.resources import installed, installed_names
 from tendon_ros.base.yaml_keys import UniqueKeys
 
@@ -173,16 +173,6 @@ class Mapping(_Strict):
         if self.runs is not None and self.format in ('csv', 'json'):
             raise ValueError(f'runs: a {self.format.upper()} file is one run; leave it out')
         return self
-
-
-def unit_of(channel: str) -> str:
-    """
-    Return the SI unit of a channel.
-
-    :param channel: name of the channel.
-    :return: for instance ``rad/s``.
-    """
-    return FIELD_UNITS[channel.rsplit('/', 1)[-1]]
 
 
 def load_mapping(path: Path | str) -> Mapping:

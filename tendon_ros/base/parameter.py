@@ -21,7 +21,8 @@ class Parameter:
     fits); what it is to the size beside it: its ``phase``, the angle at which it comes to
     ``rest``; ``slack`` (of a preload: also where it is so small that a cable loosens);
     ``shape``: a shape in spite of its neutral value; or ``guess``: fitted only where
-    an instrument file says that it is a guess.
+    an instrument file says that it is a guess. ``of_reading``: it is in the unit in which the
+    sensor reads at whose place the effect acts; ``unit`` is that of most.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Parameter:
         'shape',
         'guess',
     ] = ''
+    of_reading: bool = False
 
     @property
     def shapes_only(self) -> bool:

@@ -45,6 +45,16 @@ def channel_name(group: str, joint: str, quantity: str) -> str:
     return '/'.join(part for part in (group, joint, quantity) if part)
 
 
+def unit_of(channel: str) -> str:
+    """
+    Return the SI unit of a channel.
+
+    :param channel: its name, which ends in a key of :data:`FIELD_UNITS`.
+    :return: for instance ``rad/s``.
+    """
+    return FIELD_UNITS[channel.rsplit('/', 1)[-1]]
+
+
 @dataclass(frozen=True)
 class Channel:
     """

@@ -27,6 +27,7 @@ from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BENT, BRISTLES, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.magnitude import Magnitude, magnitude_of
+from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import EffectUse, Instrument
 
 #: [s] from the beginning that are tried
@@ -193,9 +194,11 @@ def _carried(problem: Problem, final: Fit, effects: Sequence[EffectUse]) -> list
     intervals = parameter_intervals(problem, final)
     for k, use in enumerate(effects):
         values = final.model.values(k)
+        units = units_at(problem.rollouts.instrument, use.effect, use.place)
         for p in final.model.causes[k].parameters:
             low, high = intervals[k][p.name]
             before = use.parameters.get(p.name, p.neutral)
-            row = Carried(use.effect, use.place, p.name, p.unit, before, values[p.name], low, high)
+            unit = units[p.name]
+            row = Carried(use.effect, use.place, p.name, unit, before, values[p.name], low, high)
             rows.append(row)
     return rows

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.recording import FIELD_UNITS
+from tendon_ros.base.recording import unit_of
 from tendon_ros.diagnose.enough import BLOCK
 from tendon_ros.diagnose.intervals import mean_square_interval
 from tendon_ros.diagnose.result import ChannelGap, Shrink
@@ -88,16 +88,6 @@ def beyond_noise(off: float, noise: float) -> float:
     :return: one deviation.
     """
     return math.sqrt(max(0.0, off**2 - noise**2))
-
-
-def unit_of(channel: str) -> str:
-    """
-    Return the unit of a channel.
-
-    :param channel: its name.
-    :return: the unit's symbol.
-    """
-    return FIELD_UNITS[channel.rsplit('/', 1)[-1]]
 
 
 def offs(problem: Problem, model: Model) -> dict[str, Off]:

@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 
+from tendon_ros.base.recording import unit_of
 from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.gap import noise_of, unit_of
+from tendon_ros.diagnose.gap import noise_of
 from tendon_ros.diagnose.intervals import number_intervals
 from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.prepare import Prepared

@@ -14,6 +14,7 @@ from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
+from tendon_ros.model.effect_use import units_at
 
 #: a cause is named from here on
 NAMED = 0.5
@@ -56,6 +57,7 @@ def causes_of(heard: Prepared, start: Fit, final: Fit, kept: Sequence[Weighed]) 
     for n, weighed in enumerate(kept):
         cause = weighed.cause
         values = final.model.values(n)
+        units = units_at(heard.problem.rollouts.instrument, cause.effect, cause.place)
         names = dict.fromkeys((c.effect, c.place) for c in weighed.equal)
         causes.append(
             Cause(
@@ -64,7 +66,7 @@ def causes_of(heard: Prepared, start: Fit, final: Fit, kept: Sequence[Weighed]) 
                 probability=weighed.chance,
                 parameters={
                     p.name: FittedParameter(
-                        value=values[p.name], unit=p.unit, ci95=intervals[n][p.name]
+                        value=values[p.name], unit=units[p.name], ci95=intervals[n][p.name]
                     )
                     for p in cause.parameters
                 },

@@ -9,6 +9,7 @@ import numpy as np
 from tendon_ros.diagnose.evidence import Told
 from tendon_ros.diagnose.intervals import parameter_intervals
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.model.effect_use import units_at
 
 #: norm of what a cause does to a recording, in noise deviations, that leaves a trace
 TRACE = 2.0
@@ -46,6 +47,7 @@ def told(problem: Problem, fit: Fit) -> tuple[Told, ...]:
                 continue
             shown = float(np.linalg.norm(part.slope[:, sizes] @ problem.pack(fit.model)[sizes]))
             values = part.model.values(k)
+            units = units_at(problem.rollouts.instrument, cause.effect, cause.place)
             whole = fit.model.values(k)
             for p in cause.parameters:
                 if p.is_shape or p.search == 'instant':
@@ -62,7 +64,7 @@ def told(problem: Problem, fit: Fit) -> tuple[Told, ...]:
                         cause.effect,
                         cause.place,
                         p.name,
-                        p.unit,
+                        units[p.name],
                         values[p.name],
                         (low, high),
                         why,

@@ -10,6 +10,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.screening import Screen
+from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import EffectUse, Instrument
 
 #: causes that are named
@@ -28,19 +29,19 @@ class Suspect:
     """
     An effect at a place that would explain ``share`` of what is left, 0 to 1.
 
-    ``values``: of its parameters, SI units; an event's times are left out.
+    ``values``: of its parameters; an event's times are left out. ``units``: of these.
     """
 
     effect: str
     place: str
     share: float
     values: Mapping[str, float]
+    units: Mapping[str, str]
 
     def __str__(self) -> str:
         numbers = ', '.join(
-            f'{p.name} {self.values[p.name]:.3g}' + ('' if p.unit == '1' else f' {p.unit}')
-            for p in find(self.effect).parameters
-            if p.name in self.values
+            f'{name} {value:.3g}' + ('' if self.units[name] == '1' else f' {self.units[name]}')
+            for name, value in self.values.items()
         )
         return f'{self.effect} at {self.place} ({numbers}; explains {self.share:.0%})'
 
@@ -72,7 +73,8 @@ def suspects_of(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Susp
         timed = {p.name for p in candidate.parameters if p.search in ('instant', 'duration')}
         share = (1.0 - fitted.cost / fit.cost) * (EVENT if timed else 1.0)
         values = {n: v for n, v in fitted.model.values(-1).items() if n not in timed}
-        found.append(Suspect(candidate.effect, candidate.place, share, values))
+        units = units_at(problem.rollouts.instrument, candidate.effect, candidate.place)
+        found.append(Suspect(candidate.effect, candidate.place, share, values, units))
     return tuple(sorted(found, key=lambda s: -s.share)[:MOST])
 
 

@@ -31,11 +31,12 @@ EFFECT = Effect(
         Parameter(
             name='force',
             unit='N',
-            meaning='reading without load; N m where a torque is measured',
+            meaning='reading without load; in N m where a torque is measured',
             neutral=0.0,
             low=-1e5,
             high=1e5,
             typical=0.3,
+            of_reading=True,
         ),
     ),
     modify=modify,

@@ -16,6 +16,7 @@ from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import contact_place, EffectUse, Instrument
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
@@ -156,8 +157,9 @@ def _damped(instrument: Instrument) -> Iterator[tuple[str, str, float, float]]:
 def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:
     """Yield what the file says of how well it knows the parameters of its own effects."""
     for use in instrument.effects:
+        units = units_at(instrument, use.effect, use.place)
         for p in find(use.effect).parameters:
-            name = f'{use.effect}.{p.name}'
+            name, unit = f'{use.effect}.{p.name}', units[p.name]
             spread = instrument.tolerances.get(f'{use.place}.{name}', 0.0)
             value = use.parameters.get(p.name, p.neutral)
             if spread == 0.0 or p.search in ('instant', 'duration'):
@@ -165,13 +167,13 @@ def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:
             if not math.isinf(spread):
                 scale = spread if p.unit == 'rad' else spread * abs(value)
                 reach = REACH * scale
-                axis = Axis(name, p.unit, value - reach, value + reach, value, scale, spread=1.0)
+                axis = Axis(name, unit, value - reach, value + reach, value, scale, spread=1.0)
             elif p.low > 0.0 and value > 0.0:
-                axis = Axis(name, p.unit, p.low, p.high, value, 0.5, log=True, spread=REACH)
+                axis = Axis(name, unit, p.low, p.high, value, 0.5, log=True, spread=REACH)
             else:
                 least = p.typical if p.shapes_only else p.typical - p.neutral
                 scale = max(0.5 * abs(value), abs(least))
-                axis = Axis(name, p.unit, p.low, p.high, value, scale, spread=10.0)
+                axis = Axis(name, unit, p.low, p.high, value, scale, spread=10.0)
             yield Tolerance(use.effect, use.place, name, p.name, _within(axis, p), given=True)
 
 

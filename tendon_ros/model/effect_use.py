@@ -7,9 +7,27 @@ from dataclasses import replace
 
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.quantity import parsed, written
+from tendon_ros.base.recording import unit_of
 from tendon_ros.effects import find
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
+
+
+def units_at(instrument: Instrument, effect: str, place: str) -> dict[str, str]:
+    """
+    Return the units of an effect's parameters: what a sensor reads in is told by its place.
+
+    :param instrument: where it acts.
+    :param effect: the effect's id.
+    :param place: a place of the instrument.
+    :return: units by parameter.
+    :raises EffectError: on an effect that is not in the catalogue.
+    """
+    read = {s.name: unit_of(s.channel) for s in instrument.sensors}
+    return {
+        p.name: read.get(place, p.unit) if p.of_reading else p.unit
+        for p in find(effect).parameters
+    }
 
 
 def checked_use(
@@ -40,23 +58,23 @@ def checked_use(
                 f'sensors of {listed(known.sensors)}'
             )
     values = dict(known.neutral)
+    units = units_at(instrument, effect, place)
     for name in parameters:
         if name not in values:
             raise EffectError(f'{effect} has no parameter {name!r}; it has {listed(values)}')
     for parameter in known.parameters:
         if parameter.name not in parameters:
             continue
-        given = parameters[parameter.name]
+        given, unit = parameters[parameter.name], units[parameter.name]
         field = f'{effect} at {place}: {parameter.name}'
         try:
-            value = parsed(given, parameter.unit) if isinstance(given, str) else float(given)
+            value = parsed(given, unit) if isinstance(given, str) else float(given)
         except ValueError as error:
             raise EffectError(f'{field}: {error}') from None
         if not parameter.low <= value <= parameter.high:
             raise EffectError(
                 f'{field}: {given!r} is out of bounds; give '
-                f'{written(parameter.low, parameter.unit)} to '
-                f'{written(parameter.high, parameter.unit)}'
+                f'{written(parameter.low, unit)} to {written(parameter.high, unit)}'
             )
         values[parameter.name] = value
     return EffectUse(effect, place, values)

@@ -10,8 +10,7 @@ import math
 from tendon_ros.base.errors import EffectError, InstrumentError
 from tendon_ros.base.quantity import parsed
 from tendon_ros.base.recording import channel_name
-from tendon_ros.effects import find
-from tendon_ros.model.effect_use import checked_use
+from tendon_ros.model.effect_use import checked_use, units_at
 from tendon_ros.model.instrument import (
     Contact,
     Controller,
@@ -76,7 +75,7 @@ def built(file: InstrumentSection) -> Instrument:
         plain = {name: without_tolerance(text) for name, text in use.parameters.items()}
         try:
             effects.append(checked_use(bare, use.effect, use.place, plain))
-            tolerances.update(_effect_tolerances(use))
+            tolerances.update(_effect_tolerances(bare, use))
         except (EffectError, ValueError) as error:
             raise InstrumentError(f'effects.{index}: {error}') from None
     doubled = [pair for pair, n in Counter((e.effect, e.place) for e in effects).items() if n > 1]
@@ -190,8 +189,8 @@ def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
                     yield f'{place}.{key}', stated.tolerance
 
 
-def _effect_tolerances(use: EffectSection) -> Iterator[tuple[str, float]]:
-    units = {p.name: p.unit for p in find(use.effect).parameters}
+def _effect_tolerances(one: Instrument, use: EffectSection) -> Iterator[tuple[str, float]]:
+    units = units_at(one, use.effect, use.place)
     for name, text in use.parameters.items():
         tolerance = read_stated(text, units[name]).tolerance
         if tolerance is not None:

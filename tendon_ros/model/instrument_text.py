@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from tendon_ros.base.quantity import column_text, readable_unit, written
-from tendon_ros.effects import find
+from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import (
     Contact,
     contact_place,
@@ -96,7 +96,7 @@ def _document(one: Instrument) -> Document:
         },
         'load_cell': _load_cell(sensors['load_cell']) if 'load_cell' in sensors else {},
         'control': _control(one),
-        'effects': [_effect(use, _Known(one, use.place)) for use in one.effects],
+        'effects': [_effect(one, use) for use in one.effects],
     }
     return {key: value for key, value in document.items() if value}
 
@@ -232,8 +232,8 @@ def _control(one: Instrument) -> Document:
     return {'rate': 'continuous', **period} if one.continuous_control else period
 
 
-def _effect(use: EffectUse, known: _Known) -> Document:
-    units = {p.name: p.unit for p in find(use.effect).parameters}
+def _effect(one: Instrument, use: EffectUse) -> Document:
+    known, units = _Known(one, use.place), units_at(one, use.effect, use.place)
     parameters: Document = {}
     for name, value in use.parameters.items():
         unit = units.get(name, '1')

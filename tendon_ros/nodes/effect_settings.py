@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 
 from tendon_ros.base.effect import Effect
 from tendon_ros.effects import catalogue
+from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
 from tendon_ros.nodes.settings import Setting
@@ -30,6 +31,7 @@ def effect_settings(instrument: Instrument) -> tuple[Setting, ...]:
     in_file = {(use.place, use.effect): use.parameters for use in instrument.effects}
     out = []
     for place, effect in _slots(instrument):
+        units = units_at(instrument, effect.id, place)
         given = {**effect.neutral, **in_file.get((place, effect.id), {})}
         for parameter in effect.parameters:
             out.append(
@@ -37,7 +39,7 @@ def effect_settings(instrument: Instrument) -> tuple[Setting, ...]:
                     name=_name(place, effect.id, parameter.name),
                     default=float(given[parameter.name]),
                     meaning=f'{effect.title} at {place}: {parameter.meaning}',
-                    unit=parameter.unit,
+                    unit=units[parameter.name],
                     low=parameter.low,
                     high=parameter.high,
                     live=True,

@@ -78,7 +78,7 @@ def test_what_happened_in_the_diagnosis_has_happened():
 
 def test_places_that_explain_as_much_are_all_named():
     found = [
-        Suspect('coulomb_friction', place, share, {'torque': 0.1})
+        Suspect('coulomb_friction', place, share, {'torque': 0.1}, {'torque': 'N m'})
         for place, share in (('pulley_1', 0.8), ('pulley_2', 0.75), ('pulley_3', 0.4))
     ]
     assert places_of(found) == ('pulley_1', 'pulley_2')

@@ -1,7 +1,11 @@
-"""Effects in force: beside those of an instrument, or instead of one of them."""
+"""Effects in force: beside those of an instrument, or instead of one of them; and their units."""
 
-from tendon_ros.model.effect_use import in_force
+import pytest
+
+from tendon_ros.base.errors import InstrumentError
+from tendon_ros.model.effect_use import in_force, units_at
 from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
 OWN = (
     EffectUse('stribeck_friction', 'pulley_1', {'static': 0.1, 'sliding': 0.05, 'speed': 0.2}),
@@ -34,3 +38,31 @@ def test_two_changes_of_one_effect_both_hold():
         EffectUse('gravity', 'pulley_1', {'phase': 0.1}, instead=True),
     ]
     assert in_force(OWN, uses)[1].parameters == {'torque': 0.4, 'phase': 0.1}
+
+
+def test_a_zero_is_in_the_unit_in_which_its_sensor_reads(tmp_path):
+    text = """
+name: two_readings
+pulleys: {drive: {inertia: 1 g*cm^2}, jaw: {inertia: 1 g*cm^2}}
+couplings: {shaft: {route: {drive: 1, jaw: -1}, stiffness: 15 N*m/rad}}
+motors: {drive: {pulley: drive, controller: {kp: 20 N*m/rad, limit: 5 N*m}}}
+contacts: {tip: {route: {jaw: 1}, arm: 50 mm, stiffness: 200 N/mm, position: 17 deg}}
+shaft_sensors: {jaw: {through: shaft}}
+load_cell: {noise: 0.05 N}
+effects:
+  - {effect: load_cell_bias, place: shaft_jaw, parameters: {force: 5 mN*m +- 1 mN*m}}
+  - {effect: load_cell_bias, place: load_cell, parameters: {force: 0.3 N}}
+"""
+    path = tmp_path / 'rig.yaml'
+    path.write_text(text)
+    rig = load_instrument(path)
+
+    assert units_at(rig, 'load_cell_bias', 'shaft_jaw') == {'force': 'N m'}
+    assert units_at(rig, 'load_cell_bias', 'load_cell') == {'force': 'N'}
+    assert [use.parameters['force'] for use in rig.effects] == [0.005, 0.3]
+    save_instrument(rig, tmp_path / 'again.yaml')
+    assert load_instrument(tmp_path / 'again.yaml') == rig
+
+    path.write_text(text.replace('5 mN*m +- 1 mN*m', '5 N'))
+    with pytest.raises(InstrumentError, match=r'load_cell_bias at shaft_jaw: force: .*N\*m'):
+        load_instrument(path)

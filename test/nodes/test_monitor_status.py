@@ -14,7 +14,7 @@ from tendon_ros.nodes.monitor_status import channels, whole
 
 FORCE = WatchedGap('load_cell/force', 'N', 0.6, 0.05, 0.1, 0.2, grown=True)
 EFFORT = WatchedGap('actuator/pulley_M/effort', 'N m', 0.01, 0.008, 0.01, 0.02, grown=False)
-CAUSE = Suspect('load_cell_gain', 'load_cell', 0.9, {'gain': 1.2})
+CAUSE = Suspect('load_cell_gain', 'load_cell', 0.9, {'gain': 1.2}, {'gain': '1'})
 
 
 def test_nothing_grown_is_ok_whatever_the_state():
