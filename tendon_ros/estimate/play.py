@@ -15,6 +15,8 @@ FloatArray = NDArray[np.float64]
 
 #: twists at which a coupling is looked at for play [rad]
 TWISTS = np.geomspace(1e-4, 1.0, 60)
+#: part of itself to which the end of a play is found
+EXACT = 1e-6
 #: couplings with play of which all combinations are tried
 MOST = 4
 
@@ -38,10 +40,9 @@ class Play:
             row = instrument.routing()[k]
             if not row[self._free].any():
                 continue
-            unit, still = row / float(row @ row), np.zeros(len(row))
-            stiff = [t for t in TWISTS if statics.at(t * unit, still).loop_stiffness[k] > 0.0]
-            if stiff and stiff[0] > TWISTS[0]:
-                self._ends.append((row, float(stiff[0])))
+            end = _end(statics, k, row / float(row @ row))
+            if end > 0.0:
+                self._ends.append((row, end))
                 links.append(k)
         # by how much each free pulley turns if one coupling twists and no other link gives
         self._turned = np.linalg.pinv(instrument.routing()[:, self._free])[:, links]
@@ -93,3 +94,22 @@ class Play:
             corner = angle.copy()
             corner[self._free] += self._turned @ np.array(more)
             yield corner
+
+
+def _end(statics: Statics, k: int, unit: FloatArray) -> float:
+    """Return the least twist from which on a coupling yields no further [rad]; 0 without play."""
+    still = np.zeros(len(unit))
+
+    def holds(twist: float) -> bool:
+        return bool(statics.at(twist * unit, still).loop_stiffness[k] > 0.0)
+
+    stiff = [float(twist) for twist in TWISTS if holds(twist)]
+    if not stiff or stiff[0] == TWISTS[0]:
+        return 0.0
+    outside = stiff[0]
+    inside = float(TWISTS[outside > TWISTS][-1])
+    # a coupling that is wound up is hardly beyond its play: where that ends is told apart
+    while outside - inside > EXACT * outside:
+        middle = 0.5 * (inside + outside)
+        inside, outside = (inside, middle) if holds(middle) else (middle, outside)
+    return outside
