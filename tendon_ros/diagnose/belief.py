@@ -19,6 +19,7 @@ from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils, takes_noise
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
@@ -81,10 +82,13 @@ def belief(ready: Prepared, found: Found) -> Belief:
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, found.final.model.values(k))}
     rest = _without(ready, found, undone)
-    weighed = tuple(
-        _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)
-        for k in range(len(causes))
-    )
+    weighed = _all_weighed(ready, found, rest, undone)
+    # one that is missed, and may as well have no size, is part of a form that several make up
+    nothing = unsized(ready.problem, found.final) - undone
+    if empty := {k for k in nothing if weighed[k].chance >= NAMED}:
+        undone |= empty
+        rest = _without(ready, found, undone)
+        weighed = _all_weighed(ready, found, rest, undone)
     able = [
         k for k in range(len(causes)) if k not in undone and not _open(ready.problem, found, k)
     ]
@@ -114,6 +118,16 @@ def belief(ready: Prepared, found: Found) -> Belief:
         tuple(sorted(accepted)),
         tuple(sorted(accepted | beside)),
         ahead,
+    )
+
+
+def _all_weighed(
+    ready: Prepared, found: Found, rest: Fit, undone: Collection[int]
+) -> tuple[Weighed, ...]:
+    """Return what speaks for each cause of the last state, with what stays of the others."""
+    return tuple(
+        _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)
+        for k in range(len(found.final.model.causes))
     )
 
 

@@ -117,6 +117,25 @@ def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[floa
     return found
 
 
+def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
+    """
+    Return the causes of which not even whether they are there can be told by their sizes.
+
+    :param problem: the data.
+    :param fit: the fit.
+    :return: those of which every size may as well be none.
+    """
+    found = set()
+    rows = parameter_intervals(problem, fit)
+    for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
+        sizes = [
+            p for p in cause.parameters if not (p.is_shape or p.search in ('share', 'switch'))
+        ]
+        if sizes and all(row[p.name][0] <= p.neutral <= row[p.name][1] for p in sizes):
+            found.add(k)
+    return frozenset(found)
+
+
 def number_intervals(
     problem: Problem, fit: Fit, others: Sequence[Fit] = ()
 ) -> list[tuple[float, float]]:

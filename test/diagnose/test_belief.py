@@ -261,3 +261,13 @@ def test_what_is_as_large_without_what_undoes_each_other_is_not_doubted_for_it(
     assert [w.chance > NAMED for w in firm.weighed] == [True, False]
     monkeypatch.setattr('tendon_ros.diagnose.belief.STEADY', 0.0)
     assert belief(ready, found).weighed[0].chance < firm.weighed[0].chance
+
+
+def test_what_is_missed_but_may_as_well_have_no_size_is_used_and_not_named(found_of, monkeypatch):
+    ready, found = found_of((COULOMB, {'torque': 0.05}), (GAIN, {'gain': 1.1}))
+    assert belief(ready, found).weighed[1].chance > NAMED
+    monkeypatch.setattr('tendon_ros.diagnose.belief.unsized', lambda *_: frozenset({1}))
+    judged = belief(ready, found)
+    assert judged.weighed[1].chance <= IDLE
+    assert judged.accepted == (0,)
+    assert judged.kept == (0, 1)

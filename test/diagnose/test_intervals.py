@@ -8,6 +8,7 @@ from tendon_ros.diagnose.intervals import (
     deviations,
     mean_square_interval,
     parameter_intervals,
+    unsized,
 )
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
@@ -137,3 +138,12 @@ def test_waves_are_counted_along_the_whole_way():
     parameters = {p.name: p for p in Candidate('torque_ripple', 'motor_M').parameters}
     assert _by_form(parameters['cycles'], 629.0, 0.12) < 0.03 * 629.0
     assert _by_form(parameters['amplitude'], 6.0, 0.12) == pytest.approx(0.12 * 6.0)
+
+
+def test_a_size_that_another_can_take_over_may_as_well_be_none():
+    [(problem, alone)] = fits(0, 1)
+    assert unsized(problem, alone) == frozenset()
+    # both are a torque in this model, which knows their sum and nothing else
+    twin = Candidate('coulomb_friction', 'pulley_body')
+    both = problem.fitted(alone.model.joined(twin, {'torque': 0.01}))
+    assert unsized(problem, both) == {0, 1}
