@@ -139,6 +139,7 @@ def main() -> None:
         '--trained', nargs='+', default=TRAINED, metavar='RUN', choices=EVERY,
         help='runs to diagnose, speed and load as two digits; all others judge',
     )  # fmt: skip
+    parser.add_argument('--minutes', type=float, default=10.0, help='as of `tendon diagnose`')
     parser.add_argument('--out', type=Path, default=Path('out/grasper.yaml'), help='file to write')
     parser.add_argument('--figure', type=Path, help='picture to write')
     args = parser.parse_args()
@@ -153,6 +154,7 @@ def main() -> None:
             [runs[key] for key in args.trained],
             plain,
             plan=False,
+            seconds=60.0 * args.minutes,
             report=lambda what, done: print(f'{done:4.0%} {what}', flush=True),
         )
         found = outcome.instrument

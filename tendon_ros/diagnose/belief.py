@@ -20,7 +20,16 @@ from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.intervals import unsized
-from tendon_ros.diagnose.judge import chance, equals, IDLE, signs_beside, spoils, takes_noise
+from tendon_ros.diagnose.judge import (
+    chance,
+    equals,
+    IDLE,
+    signs_beside,
+    spoils,
+    Stays,
+    stays,
+    takes_noise,
+)
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
@@ -92,10 +101,11 @@ def belief(ready: Prepared, found: Found) -> Belief:
     able = [
         k for k in range(len(causes)) if k not in undone and not _open(ready.problem, found, k)
     ]
-    together = companies(ready, found, weighed, able, rest.left)
+    left = stays(ready, rest)
+    together = companies(ready, found, weighed, able, left)
     if ready.problem.by_misfit and not together:
-        stays = [k for k in range(len(causes)) if k not in undone]
-        rubs = rubbing(ready, found, weighed, stays, rest.left)
+        others = [k for k in range(len(causes)) if k not in undone]
+        rubs = rubbing(ready, found, weighed, others, left)
         together = [rubs] if rubs else []
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
@@ -125,8 +135,16 @@ def _all_weighed(
     ready: Prepared, found: Found, rest: Fit, undone: Collection[int]
 ) -> tuple[Weighed, ...]:
     """Return what speaks for each cause of the last state, with what stays of the others."""
+    all_leaves = stays(ready, found.final)
+    rest_leaves = all_leaves if rest is found.final else stays(ready, rest)
     return tuple(
-        _weighed(ready, found, k, _left_beside(found.final, rest, k), k in undone)
+        _weighed(
+            ready,
+            found,
+            k,
+            all_leaves if _stands_alone(found.final, rest, k) else rest_leaves,
+            k in undone,
+        )
         for k in range(len(found.final.model.causes))
     )
 
@@ -139,26 +157,25 @@ def _without(ready: Prepared, found: Found, undone: Collection[int]) -> Fit:
     return rest if math.isfinite(rest.cost) else found.start
 
 
-def _left_beside(final: Fit, rest: Fit, k: int) -> FloatArray:
+def _stands_alone(final: Fit, rest: Fit, k: int) -> bool:
     """
-    Return what stays of all that may be believed, beside one cause.
+    Return whether a cause has the same sizes with those that undo each other and without them.
 
-    Causes that undo each other stand for something unknown. One that has the same sizes with them
-    and without them is not what that is told by.
+    They stand for something unknown. It is not what that is told by then, and what stays beside
+    it is what all leave.
     """
     cause, sizes = final.model.causes[k], final.model.values(k)
     if cause not in rest.model.causes or rest.cost <= final.cost:
-        return rest.left
+        return False
     alone = rest.model.values(rest.model.causes.index(cause))
-    steady = all(
+    return all(
         abs(alone[p.name] - sizes[p.name]) <= STEADY * abs(sizes[p.name] - p.neutral)
         for p in cause.parameters
         if not p.is_shape
     )
-    return final.left if steady else rest.left
 
 
-def _weighed(ready: Prepared, found: Found, k: int, left: FloatArray, undone: bool) -> Weighed:
+def _weighed(ready: Prepared, found: Found, k: int, left: Stays, undone: bool) -> Weighed:
     """
     Return what speaks for one cause of the last state.
 

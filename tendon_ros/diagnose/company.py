@@ -18,7 +18,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import probability, signs_beside, spoils
+from tendon_ros.diagnose.judge import probability, signs_beside, spoils, Stays
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
@@ -49,7 +49,7 @@ def companies(
     found: Found,
     weighed: Sequence[Weighed],
     able: Sequence[int],
-    left: FloatArray,
+    left: Stays,
 ) -> list[Company]:
     """
     Return what is certain of causes that are each uncertain.
@@ -58,7 +58,7 @@ def companies(
     :param found: what the search has found.
     :param weighed: its causes.
     :param able: which of them may make up for one another, sorted; events do for nothing.
-    :param left: what all that may be believed leaves, shape (samples,).
+    :param left: what all that may be believed leaves.
     :return: the companies that can be named.
     """
     problem, final = ready.problem, found.final
@@ -85,7 +85,7 @@ def rubbing(
     found: Found,
     weighed: Sequence[Weighed],
     able: Sequence[int],
-    left: FloatArray,
+    left: Stays,
 ) -> Company | None:
     """
     Return the dry frictions of a machine as one, of which each alone is uncertain.
@@ -98,7 +98,7 @@ def rubbing(
     :param found: what the search has found.
     :param weighed: its causes.
     :param able: those that others do not undo.
-    :param left: what all that may be believed leaves, shape (samples,).
+    :param left: what all that may be believed leaves.
     :return: the company; None where one of them is certain, or all of them are not.
     """
     causes = found.final.model.causes
@@ -118,7 +118,7 @@ def _as_one(
     members: Sequence[int],
     alone: Mapping[int, float],
     without: Fit,
-    left: FloatArray,
+    left: Stays,
 ) -> Company | None:
     """Return causes as a company, if it can be named; ``without``: the fit without all of them."""
     if not math.isfinite(without.cost):

@@ -112,20 +112,56 @@ def equals(problem: Problem, found: Found, k: int, *, by_law: bool = True) -> li
     return [r for r in found.rivals[k] if (r.fit.cost - final.cost) / samples <= allowed]
 
 
-def signs_beside(
-    problem: Problem, found: Found, without: Fit, left: FloatArray | None = None
-) -> Signs:
+@dataclass(frozen=True)
+class Stays:
+    """What a model leaves that has a form, in noise power per sample: of each channel, of all."""
+
+    by_channel: Mapping[str, float]
+    whole: float
+
+
+def stays(ready: Prepared, fit: Fit) -> Stays:
+    """
+    Return what a model leaves that has a form.
+
+    A law that is not the machine's may be bent to what was fitted; what was held out tells.
+
+    :param ready: the problem.
+    :param fit: the model, as it was fitted.
+    :return: that of the fitted bins, or of those that were held out where they leave more, by more
+        than they may without any effect.
+    """
+    seen = _structure(ready.problem, fit.left)
+    unseen = _structure(ready.held, ready.held.left(fit.model))
+    return Stays(
+        {
+            name: max(power, unseen.by_channel.get(name, 0.0) - LEFT_NOISE)
+            for name, power in seen.by_channel.items()
+        },
+        max(seen.whole, unseen.whole - LEFT_NOISE),
+    )
+
+
+def _structure(problem: Problem, left: FloatArray) -> Stays:
+    """Return the structured power of what is left; finite also of a model that diverges."""
+    parts = problem.structured_by_channel(left)
+    return Stays(
+        {name: min(power / max(count, 1), BOUNDLESS) for name, (power, count) in parts.items()},
+        min(problem.structured(left), BOUNDLESS),
+    )
+
+
+def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> Signs:
     """
     Return what speaks for what a fit does without.
 
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param without: the fit without one cause, or without several that make up for one another.
-    :param left: what all that may be believed leaves, shape (samples,); the last state's if None.
+    :param left: what all that may be believed leaves.
     :return: the signs.
     """
     final = found.final
-    left = final.left if left is None else left
     channels = problem.channels()
     then, last = (by_channel(problem, fit.left) for fit in (without, final))
     # finite also of a model that diverges
@@ -136,8 +172,6 @@ def signs_beside(
     def there(power: Mapping[str, float]) -> float:
         return float(sum(power.get(c, 0.0) * gained[c] for c in channels)) / every
 
-    structured = problem.structured_by_channel(left)
-    stays = {c: power / max(count, 1) for c, (power, count) in structured.items()}
     wrong = [
         there(by_channel(problem, np.sqrt(part)))
         for part in form_parts(problem, found.start, final)
@@ -154,15 +188,14 @@ def signs_beside(
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
     form = own_power(problem, found.start) + sum(wrong)
-    whole = problem.structured(left)
     grown = min(gains(problem, without, final)[0], BOUNDLESS)
     return Signs(
         worth=max(there(gain), 1e-9),
-        left=there(stays) + ELSEWHERE * whole,
+        left=there(left.by_channel) + ELSEWHERE * left.whole,
         form=form,
         event=event,
         beside=sum(kept),
-        part=grown / max(grown + whole, 1e-9),
+        part=grown / max(grown + left.whole, 1e-9),
     )
 
 

@@ -26,7 +26,7 @@ from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
-from tendon_ros.diagnose.judge import left_over, surprising
+from tendon_ros.diagnose.judge import left_over, stays, surprising
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
@@ -108,7 +108,8 @@ def diagnose(
     if len(model.causes) < len(believed.model.causes):
         believed = problem.fitted(model, rounds=6)
     left = problem.structured(believed.left)
-    beyond = left_over(left, form_power(problem, found.start, believed, resting=False))
+    form = form_power(problem, found.start, believed, resting=False)
+    beyond = left_over(stays(ready, believed).whole, form)
     places = whereabouts(ready, found, held.accepted, believed, left)
     # where there is no gap, there is nothing that anything could stand in for
     kept = held.kept if held.named or beyond >= NAMED else ()

@@ -3,7 +3,6 @@
 from dataclasses import replace
 import math
 
-import numpy as np
 import pytest
 
 from tendon_ros.diagnose import session
@@ -11,7 +10,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.judge import equals, IDLE, signs_beside
+from tendon_ros.diagnose.judge import equals, IDLE, signs_beside, Stays, stays
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
@@ -63,7 +62,7 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
     apart = [found.without[k].cost - found.final.cost for k in (0, 1)]
     both = ready.problem.fitted(found.final.model.without(0, 1)).cost - found.final.cost
     assert both > 2.0 * sum(apart)
-    [company] = companies(ready, found, judged.weighed, [0, 1], found.final.left)
+    [company] = companies(ready, found, judged.weighed, [0, 1], stays(ready, found.final))
     first = max((0, 1), key=lambda k: apart[k])
     assert company.members == (first, 1 - first)
     assert company.weighed.cause == found.final.model.causes[first]
@@ -74,8 +73,9 @@ def test_causes_that_make_up_for_one_another_are_certain_together(alike):
 def test_much_that_stays_without_what_undoes_each_other_speaks_against_a_company(alike):
     ready, found = alike
     weighed = belief(ready, found).weighed
-    [company] = companies(ready, found, weighed, [0, 1], found.final.left)
-    much = np.full_like(found.final.left, math.sqrt(10.0 * company.weighed.signs.worth))
+    [company] = companies(ready, found, weighed, [0, 1], stays(ready, found.final))
+    power = 10.0 * company.weighed.signs.worth
+    much = Stays(dict.fromkeys(ready.problem.channels(), power), power)
     assert companies(ready, found, weighed, [0, 1], much) == []
 
 
@@ -84,7 +84,8 @@ def test_dry_frictions_that_are_each_uncertain_are_one(alike):
     ready, found = alike
     able = range(len(found.final.model.causes))
     weighed = [replace(w, chance=0.3) for w in belief(ready, found).weighed]
-    one = rubbing(ready, found, weighed, able, found.final.left)
+    left = stays(ready, found.final)
+    one = rubbing(ready, found, weighed, able, left)
     assert one is not None
     assert sorted(one.members) == [0, 1]
     assert one.weighed.chance > NAMED
@@ -92,10 +93,11 @@ def test_dry_frictions_that_are_each_uncertain_are_one(alike):
     assert GAIN not in one.weighed.equal
     # one that is certain needs no other, and one alone is no company
     sure = [replace(weighed[0], chance=0.9), *weighed[1:]]
-    assert rubbing(ready, found, sure, able, found.final.left) is None
-    assert rubbing(ready, found, weighed, [0, 2], found.final.left) is None
+    assert rubbing(ready, found, sure, able, left) is None
+    assert rubbing(ready, found, weighed, [0, 2], left) is None
     # where much stays, friction may stand in for something unknown
-    assert rubbing(ready, found, weighed, able, 100.0 + found.start.left) is None
+    much = Stays(dict.fromkeys(left.by_channel, 1e4), 1e4)
+    assert rubbing(ready, found, weighed, able, much) is None
 
 
 def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
@@ -103,18 +105,18 @@ def test_a_doubted_cause_goes_with_the_named_one_that_it_makes_up_for(alike):
     weighed = list(belief(ready, found).weighed)
     chances = [0.9, 0.2, 0.9]
     judged = [replace(w, chance=c) for w, c in zip(weighed, chances, strict=True)]
-    [company] = companies(ready, found, judged, [0, 1, 2], found.final.left)
+    [company] = companies(ready, found, judged, [0, 1, 2], stays(ready, found.final))
     assert sorted(company.members) == [0, 1]
     # two that are named alone are told apart
     judged = [replace(w, chance=0.9) for w in weighed]
-    assert companies(ready, found, judged, [0, 1, 2], found.final.left) == []
+    assert companies(ready, found, judged, [0, 1, 2], stays(ready, found.final)) == []
 
 
 def test_causes_that_act_apart_are_no_company(alike):
     ready, found = alike
     weighed = belief(ready, found).weighed
     for able in ([0, 2], [2], []):
-        assert companies(ready, found, weighed, able, found.final.left) == []
+        assert companies(ready, found, weighed, able, stays(ready, found.final)) == []
 
 
 def test_a_motor_is_at_the_place_of_its_pulley(found_of):
@@ -123,7 +125,10 @@ def test_a_motor_is_at_the_place_of_its_pulley(found_of):
     there = (Candidate('coulomb_friction', 'pulley_L'), {'torque': 0.05})
     for friction, beside in ((elsewhere, False), (there, True)):
         ready, found = found_of(friction, (GAIN, {'gain': 1.1}))
-        assert (signs_beside(ready.problem, found, found.without[1]).beside > 0.0) == beside
+        assert (
+            signs_beside(ready.problem, found, found.without[1], stays(ready, found.final)).beside
+            > 0.0
+        ) == beside
 
 
 def test_what_spoils_nothing_is_kept_though_it_is_not_named(found_of, monkeypatch):

@@ -9,7 +9,16 @@ from tendon_ros.diagnose import judge
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.form import form_parts
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import chance, IDLE, probability, Signs, signs_beside, spoils
+from tendon_ros.diagnose.judge import (
+    chance,
+    IDLE,
+    LEFT_NOISE,
+    probability,
+    Signs,
+    signs_beside,
+    spoils,
+    stays,
+)
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 
@@ -87,7 +96,8 @@ def test_the_law_beside_is_that_of_the_others_at_the_place(ready):
     viscous = ('viscous_friction', 'pulley_3', {'damping': 0.05})
     bias = ('torque_bias', 'motor_M', {'torque': 0.01})
     found = found_with(ready.problem, FRICTION, viscous, bias)
-    of = [signs_beside(ready.problem, found, without) for without in found.without]
+    left = stays(ready, found.final)
+    of = [signs_beside(ready.problem, found, without, left) for without in found.without]
     for part, signs in zip(
         form_parts(ready.problem, found.start, found.final)[1::-1], of[:2], strict=True
     ):
@@ -98,16 +108,35 @@ def test_the_law_beside_is_that_of_the_others_at_the_place(ready):
 
 def test_what_stays_of_another_motor_says_nothing_of_a_cause(ready, bench, measured_on):
     gain = ('torque_gain', 'motor_L', {'gain': 1.1})
-    problem = prepared([measured_on(bench, gain)], bench).problem
+    ready = prepared([measured_on(bench, gain)], bench)
+    problem = ready.problem
     found = found_with(problem, gain)
     [without] = found.without
+    left = stays(ready, found.final)
     likely = {}
-    for channel, own in problem.channels().items():
-        left = found.final.left + np.where(own, 1.0, 0.0)
-        likely[channel] = probability(signs_beside(problem, found, without, left))
-    plain = probability(signs_beside(problem, found, without))
+    for channel, power in left.by_channel.items():
+        more = replace(left, by_channel={**left.by_channel, channel: power + 1.0})
+        likely[channel] = probability(signs_beside(problem, found, without, more))
+    plain = probability(signs_beside(problem, found, without, left))
     assert likely['actuator/pulley_M/effort'] > 0.8 * plain
     assert likely['actuator/pulley_L/effort'] < 0.5 * plain
+
+
+def test_what_was_held_out_tells_what_stays_where_it_leaves_more(ready):
+    found = found_with(ready.problem, FRICTION)
+    fitted = stays(ready, found.final)
+    # the same model without the friction, as if it had been bent to what was fitted
+    bent = replace(found.final, model=found.start.model)
+    held = ready.held.left(found.start.model)
+    unseen = ready.held.structured(held)
+    assert unseen > 10.0 * fitted.whole + LEFT_NOISE
+    assert stays(ready, bent).whole == pytest.approx(unseen - LEFT_NOISE)
+    for name, (power, count) in ready.held.structured_by_channel(held).items():
+        least = max(fitted.by_channel[name], power / count - LEFT_NOISE)
+        assert stays(ready, bent).by_channel[name] == pytest.approx(least)
+    # and what was fitted tells it where that leaves more
+    worse = replace(found.final, left=found.start.left)
+    assert stays(ready, worse).whole == ready.problem.structured(found.start.left)
 
 
 def test_a_slip_from_the_first_happened_between_recordings(ready):
