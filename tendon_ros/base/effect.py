@@ -107,6 +107,11 @@ class Effect:
     dissipative: bool = False
     sensors: tuple[str, ...] = ()  # kinds of sensor, where the place is a sensor
 
+    @property
+    def dry(self) -> bool:
+        """Whether it is a dry friction, by whatever law."""
+        return self.hook == 'budget'
+
     @cached_property
     def neutral(self) -> Mapping[str, float]:
         """Parameters with which the effect changes nothing."""

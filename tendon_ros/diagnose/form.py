@@ -111,7 +111,7 @@ def _form(problem: Problem, effect: str, place: str) -> float:
     """Return which part of what an effect does at a place its law may get wrong."""
     known = find(effect)
     driven = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
-    return max(known.form, COUNTED) if known.hook == 'budget' and place in driven else known.form
+    return max(known.form, COUNTED) if known.dry and place in driven else known.form
 
 
 #: of each problem, the state that was asked about last, and what the file's effects may leave

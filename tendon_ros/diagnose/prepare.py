@@ -17,8 +17,9 @@ from tendon_ros.identify.binning import bin_length
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.motion import thinned
-from tendon_ros.identify.rollout import loosest, Rollouts
+from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import ENDING, Segment, segment_of, SETTLING
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import Instrument

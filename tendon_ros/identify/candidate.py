@@ -53,7 +53,7 @@ class Candidate:
     @property
     def dry(self) -> bool:
         """Whether it is a dry friction, by whatever law."""
-        return find(self.effect).hook == 'budget'
+        return find(self.effect).dry
 
     @property
     def switches(self) -> bool:

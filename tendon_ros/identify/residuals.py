@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.hearing import neighbours, unshared
-from tendon_ros.identify.rollout import fineness, Rollouts, ROUGHER
+from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.step_size import fineness, ROUGHER
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.identify.segment import Segment
+from tendon_ros.identify.step_size import fineness, TOLERANCE
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import as_held, as_reported, usual_part
 from tendon_ros.model.effect_use import in_force
@@ -27,16 +28,6 @@ from tendon_ros.model.simulation import along, follow
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-#: [rad] a step; a hundredth of an encoder's count
-TOLERANCE = 4e-6
-#: the same where nothing that is measured notices, the roughest first
-ROUGHER = (1e-4, 2e-5)
-#: [rad] counts that are finer ask for finer steps: on a straight axis a radian stands for a metre,
-#: and friction builds up over some micrometres
-FINE = 2e-5
-#: part of what the right model may be off that this may change of the file's. Dry friction makes
-#: it some five times more, and derivatives are taken from changes of a tenth
-UNNOTICED = 4e-3
 WHOLE = 1e-6  # part of a bin that no delay is told by
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
@@ -254,48 +245,6 @@ def _sooner(
             yield use
     for name, rest in late.items():
         yield EffectUse('sensor_delay', name, {'time': max(rest, 0.0)})
-
-
-def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
-    """
-    Return how roughly rollouts may be computed.
-
-    :param instrument: the network.
-    :param segments: what was measured, with its noise and what models leave of it.
-    :return: a tolerance of a step [rad].
-    """
-    unit = fineness(instrument)
-    fine = _of_the_file(instrument, segments, unit * TOLERANCE)
-    for tolerance in (unit * step for step in ROUGHER):
-        rough = _of_the_file(instrument, segments, tolerance)
-        changes = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(rough, fine, strict=True)]
-        # infinite where the file's own model diverges
-        if float(np.max(changes)) < UNNOTICED:
-            return tolerance
-    return unit * TOLERANCE
-
-
-def fineness(instrument: Instrument) -> float:
-    """
-    Return how much finer than usual an instrument's angles are to be computed.
-
-    :param instrument: the network.
-    :return: 1, or less where a motor's encoder counts finer than any of a joint.
-    """
-    counts = [s.resolution for s in instrument.sensors if s.kind == 'angle' and s.resolution > 0.0]
-    return min([1.0, *(count / FINE for count in counts)])
-
-
-def _of_the_file(
-    instrument: Instrument, segments: Sequence[Segment], tolerance: float
-) -> list[FloatArray]:
-    """Return all channels as the file has them, by what the right model may be off."""
-    rows = Rollouts(instrument, segments, tolerance=tolerance).predicted([[] for _ in segments])
-    return [
-        row / m.doubt
-        for segment, of_segment in zip(segments, rows, strict=True)
-        for m, row in zip(segment.measured, of_segment, strict=True)
-    ]
 
 
 def _zeroed(segment: Segment, found: FloatArray) -> FloatArray:

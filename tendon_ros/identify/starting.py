@@ -17,7 +17,7 @@ from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.rollout import fineness
+from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
 from tendon_ros.model.numbers import place_index
 

@@ -206,7 +206,7 @@ def _likenesses(causes: tuple[Cause, ...]) -> str:
     """Return what effects that may stand in for something are like: dry frictions are one."""
     said = [
         f'friction on {place_words(cause.place)}'
-        if find(cause.effect).hook == 'budget'
+        if find(cause.effect).dry
         else inside(effect_words(cause.effect, cause.place))
         for cause in causes
     ]

@@ -6,7 +6,8 @@ import pytest
 
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.identify.rollout import FINE, fineness, Rollouts, ROUGHER, TOLERANCE
+from tendon_ros.identify.rollout import Rollouts
+from tendon_ros.identify.step_size import FINE, fineness, ROUGHER, TOLERANCE
 from tendon_ros.model.instrument_file import load_instrument
 
 AXIS = """

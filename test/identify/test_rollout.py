@@ -7,8 +7,9 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.residuals import FEW
-from tendon_ros.identify.rollout import loosest, ROUGHER
+from tendon_ros.identify.step_size import ROUGHER
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import usual_part
 from tendon_ros.model.instrument import EffectUse
