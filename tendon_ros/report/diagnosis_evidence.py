@@ -15,6 +15,7 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
     effect_words,
+    inside,
     moved_words,
     number,
     percent,
@@ -145,7 +146,8 @@ def _considered(diagnosis: Diagnosis, evidence: Evidence) -> Section:
     if hidden:
         said = f'{count(len(hidden), "candidate")} that these data cannot show'
         title = f'{said}: present or not, they leave too little trace.'
-        blocks.append(Table(('effect', 'places', 'why not'), _grouped(hidden), title, wraps=True))
+        rows = _grouped(hidden, diagnosis.candidates)
+        blocks.append(Table(('effect', 'places', 'why not'), rows, title, wraps=True))
     visible = [c for c in diagnosis.candidates if c.identifiable]
     if visible:
         said = f'{count(len(visible), "candidate")} that these data would have shown'
@@ -155,11 +157,20 @@ def _considered(diagnosis: Diagnosis, evidence: Evidence) -> Section:
     return Section('What was considered', tuple(blocks), 'considered')
 
 
-def _grouped(hidden: Iterable[Judged]) -> tuple[tuple[str, str, str], ...]:
-    """Return a row for each effect and reason, with all its places."""
+def _grouped(
+    hidden: Iterable[Judged], candidates: Iterable[Judged]
+) -> tuple[tuple[str, str, str], ...]:
+    """Return a row for each effect and reason, with all its places; reasons name candidates."""
+    called = {
+        f'{c.effect} at {c.place}': inside(effect_words(c.effect, c.place)) for c in candidates
+    }
+    names = sorted(called, key=len, reverse=True)  # pulley_1 begins pulley_12
     places: dict[tuple[str, str], list[str]] = {}
     for judged in hidden:
-        places.setdefault((judged.effect, judged.why_not), []).append(judged.place)
+        why = judged.why_not
+        for name in names:
+            why = why.replace(name, called[name])
+        places.setdefault((judged.effect, why), []).append(judged.place)
     return tuple(
         (find(effect).title, ', '.join(map(place_words, at)), why or 'no reason was given')
         for (effect, why), at in places.items()

@@ -4,6 +4,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 import re
 
+from tendon_ros.diagnose.result import Judged
 from tendon_ros.report.diagnosis_evidence import evidence_sections
 from tendon_ros.report.diagnosis_page import diagnosis_page
 from tendon_ros.report.diagnosis_verdict import headline, LABELS
@@ -127,6 +128,24 @@ def test_pictures_come_for_dark_pages_too(page):
 def test_candidates_that_cannot_show_are_grouped_by_reason(page):
     text = text_of(page('three_causes'))
     assert 'Inertia pulley M, pulley L, pulley 1 leaves no trace at these speeds' in text
+
+
+def test_reasons_are_given_in_words(case):
+    diagnosis, evidence = case('three_causes')
+    alike = tuple(
+        Judged(
+            effect='coulomb_friction',
+            place=place,
+            probability=0.4,
+            identifiable=False,
+            why_not=f'the data cannot tell it from coulomb_friction at {other}',
+        )
+        for place, other in (('pulley_1', 'pulley_12'), ('pulley_12', 'pulley_1'))
+    )
+    told = diagnosis.model_copy(update={'candidates': alike})
+    text = text_of(diagnosis_page(told, replace(evidence, traces=(), closed_loop=())))
+    for other in ('1', '12'):
+        assert f'the data cannot tell it from Coulomb friction on pulley {other}' in text
 
 
 def test_what_only_holds_is_no_cause_and_said_to_be_none(page):
