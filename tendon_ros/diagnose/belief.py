@@ -19,6 +19,7 @@ from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.giving_less import giving_less
 from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.judge import (
     chance,
@@ -89,6 +90,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(ready.problem, found.final.model)
     undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
     undone |= ahead.late if ahead else frozenset()
+    undone |= giving_less(ready.problem, found.final)
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, found.final.model.values(k))}
     rest = _without(ready, found, undone)
     weighed = _all_weighed(ready, found, rest, undone)

@@ -84,6 +84,16 @@ class Residuals:
         """
         return type(self)(self.rollouts, tolerances, self._used)
 
+    def leaving_out(self, bins: Sequence[NDArray[np.bool_]]) -> Self:
+        """
+        Return the problem without some bins.
+
+        :param bins: which do not count, one mask (bins,) a segment.
+        :return: the problem.
+        """
+        used = [own & ~out for own, out in zip(self._used, bins, strict=True)]
+        return type(self)(self.rollouts, self.tolerances, used)
+
     @property
     def masks(self) -> tuple[NDArray[np.bool_], ...]:
         """Which samples count: one (channels, bins) a segment."""
@@ -155,6 +165,15 @@ class Residuals:
                 near = self._near(cause, instant)
                 left[near] = np.clip(left[near], -2.0, 2.0)
         return left
+
+    def predicted(self, model: Model) -> FloatArray:
+        """
+        Return what a model predicts of each sample that counts, in noise deviations.
+
+        :param model: the model.
+        :return: shape (samples,).
+        """
+        return self.flat(self.rollouts.predicted(self.uses(model), self._asked))
 
     def _near(self, cause: Candidate, instant: float) -> NDArray[np.bool_]:
         """Return the samples so near an event that how it came about matters."""

@@ -1,0 +1,75 @@
+"""A motor that for a while gives less than it reports is no push."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.giving_less import giving_less
+from tendon_ros.diagnose.judge import IDLE
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+
+EFFORT = 'actuator/pulley_M/effort'
+PUSH = Candidate('disturbance', 'pulley_M')
+LIMIT = Candidate('torque_saturation', 'motor_M')
+WHEN = {'start': 1.5, 'duration': 1.2}
+
+
+@pytest.fixture(scope='module')
+def fitted_to(bench, measured_on, spoilt):
+    """Return a way to fits of some causes to a recording of the bench."""
+
+    def fit(effects, causes, change=None):
+        runs = (measured_on(bench, *effects),)
+        runs = spoilt(runs, EFFORT, change) if change else runs
+        ready = prepared(runs, bench)
+        model = ready.problem.empty
+        for candidate, values in causes:
+            model = model.joined(candidate, values)
+        return ready, ready.problem.fitted(model)
+
+    return fit
+
+
+def dipped(time, value):
+    """Return a torque of which a third is reported and not given, for a while."""
+    less = (time >= WHEN['start']) & (time < WHEN['start'] + WHEN['duration'])
+    return time, np.where(less, 1.5 * value, value)
+
+
+def test_what_is_in_proportion_to_the_torque_is_no_push(fitted_to):
+    begun = [(PUSH, {'torque': -0.5, **WHEN})]
+    ready, state = fitted_to((), begun, dipped)
+    assert giving_less(ready.problem, state) == {0}
+    empty = ready.problem.fitted(ready.problem.empty)
+    found = Found(states=[empty, state], rivals=[[]], without=[empty])
+    [weighed] = belief(ready, found).weighed
+    assert weighed.chance <= IDLE
+
+
+def test_who_helps_such_a_push_goes_with_it(fitted_to):
+    begun = [
+        (PUSH, {'torque': -0.5, **WHEN}),
+        (LIMIT, {'limit': 2.0, 'knee': 0.5}),
+        (Candidate('coulomb_friction', 'pulley_L'), {'torque': 0.1}),
+    ]
+    friction = ('coulomb_friction', 'pulley_L', {'torque': 0.1})
+    ready, state = fitted_to((friction,), begun, dipped)
+    assert 0 in giving_less(ready.problem, state)
+    assert 2 not in giving_less(ready.problem, state)
+
+
+@pytest.mark.parametrize('torque', [-0.5, 0.3])
+def test_a_push_is_one(fitted_to, torque):
+    push = ('disturbance', 'pulley_M', {'torque': torque, **WHEN})
+    friction = ('coulomb_friction', 'pulley_M', {'torque': 0.1})
+    begun = [(PUSH, push[2]), (Candidate(*friction[:2]), friction[2])]
+    ready, state = fitted_to((push, friction), begun)
+    assert giving_less(ready.problem, state) == frozenset()
+
+
+def test_only_pushes_on_motors_are_asked(fitted_to):
+    push = ('disturbance', 'pulley_3', {'torque': 0.3, **WHEN})
+    ready, state = fitted_to((push,), [(Candidate(*push[:2]), push[2])])
+    assert giving_less(ready.problem, state) == frozenset()
