@@ -90,7 +90,8 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(ready.problem, found.final.model)
     undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
     undone |= ahead.late if ahead else frozenset()
-    undone |= giving_less(ready.problem, found.final)
+    less = giving_less(ready.problem, found.final)
+    undone |= less
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, found.final.model.values(k))}
     rest = _without(ready, found, undone)
     weighed = _all_weighed(ready, found, rest, undone)
@@ -117,7 +118,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     beside = {
         k
         for k, cause in enumerate(causes)
-        if k not in accepted
+        if k not in accepted | less  # who only helps a push is of no use without it
         and not cause.instants
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.bodies import turned
 from tendon_ros.diagnose.form import tie
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.residuals import SUDDEN
 
 FloatArray = NDArray[np.float64]
 
@@ -81,23 +82,34 @@ def _left_with_less(
     rest = problem.leaving_out(within).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
     known = problem.predicted(rest.model)
-    stays = float(left @ left)
     there = problem.sampled(within)
+    time = problem.sampled([s.time for s in segments])
     for n, c, span in problem.spans():
-        if segments[n].measured[c].sensor.channel == channel:
-            own = there[span]
-            stays -= _saved(left[span][own], known[span][own])
+        if segments[n].measured[c].sensor.channel == channel and there[span].any():
+            own = np.flatnonzero(there[span]) + span.start
+            left[own] = _with_less(left[own], known[own], time[own])
+    stays = float(left @ left)
     return stays if np.isfinite(stays) else np.inf
 
 
-def _saved(left: FloatArray, known: FloatArray) -> float:
-    """Return what a further part of a known torque takes off the squares, in its best stretch."""
+def _with_less(left: FloatArray, known: FloatArray, time: FloatArray) -> FloatArray:
+    """Return what stays of a torque if in its best stretch a further part of it is reported."""
     if len(left) <= BRIEF:
-        return 0.0
+        return left
     cross = np.concatenate([[0.0], np.cumsum(left * known)])
     power = np.concatenate([[0.0], np.cumsum(known * known)])
     # more is reported than acts: the part has the sign of the torque
     more = np.maximum(cross[None, :] - cross[:, None], 0.0)
     among = np.maximum(power[None, :] - power[:, None], 1e-12)
-    long = np.subtract.outer(np.arange(len(cross)), np.arange(len(cross))).T >= BRIEF
-    return float(np.max(np.where(long, more**2 / among, 0.0)))
+    ends = np.arange(len(cross))
+    saved = np.where(ends[None, :] - ends[:, None] >= BRIEF, more**2 / among, 0.0)
+    first, last = np.unravel_index(int(np.argmax(saved)), saved.shape)
+    # nor does it set in at once
+    at_ends = [np.abs(time - time[at]) < SUDDEN for at in (first, last - 1)]
+    near = np.logical_or(*at_ends)
+    within = np.zeros(len(left), dtype=np.bool_)
+    within[first:last] = True
+    sure = within & ~near
+    part = max(0.0, float(left[sure] @ known[sure])) / max(float(known[sure] @ known[sure]), 1e-12)
+    stays = left - part * known * within
+    return np.where(near, np.clip(stays, -2.0, 2.0), stays)
