@@ -14,6 +14,7 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.alike import leaning
+from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words
@@ -35,9 +36,9 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.patience import Patience, USUAL
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
-from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import known_words, loose
-from tendon_ros.diagnose.worth import hopeless
+from tendon_ros.diagnose.worth import beyond_laws, hopeless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import Model
@@ -197,6 +198,15 @@ def _searched(
         if memory is not None:
             memory.weigh(by)
         found = search(by, memory)
+    for sign in signless(ready.problem, candidates):
+        # guesses go far to do without a lost sign, and what is found beside them imitates it
+        imitated = beyond_laws(ready.problem, found.start, found.final)
+        if not imitated or sign in found.final.model.causes or patience.over:
+            continue
+        report('looking again: a sensor may have lost its sign', 0.0)
+        other = search(ready.problem.fitted(lost(ready.problem.begun, sign)).model)
+        if other.final.cost < GAINED * found.final.cost:
+            found = other
     again = ready.heard_again(found.final.model)
     # what stands in for something unknown may take noise away as well, and tells no more
     if again.quieter(ready) and _worth_more(ready, found, patience):

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose.asking import may_be_signless
+from tendon_ros.diagnose import session
+from tendon_ros.diagnose.asking import lost, may_be_signless
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -61,3 +64,39 @@ def test_a_lost_sign_is_found_beside_a_spring(axis, recorded):
     spring = found.final.model.values(next(k for k, c in enumerate(causes) if c != SIGN))
     # the torque constant is a guess, so that sizes are not told; the angle at rest is
     assert spring['rest'] == pytest.approx(-0.1, abs=0.01)
+
+
+@pytest.mark.parametrize(('right', 'looks'), [(False, True), (True, False)])
+def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
+    axis, recorded, monkeypatch, right, looks
+):
+    run = recorded(SPRING, LOST)
+    ready = prepared([run], axis)
+    said, begun_from = [], []
+
+    class Searching:
+        """Ends where it would have gone astray, unless it begins beside the sign."""
+
+        def __init__(self, problem, candidates, jobs, report, memory, begun, *_):
+            self.problem, self.begun = problem, begun
+            begun_from.append(begun)
+
+        def run(self):
+            model = self.problem.empty
+            if right or (self.begun is not None and SIGN in self.begun.causes):
+                model = lost(model, SIGN).joined(Candidate(*SPRING[:2]), SPRING[2])
+            else:
+                model = model.joined(
+                    Candidate('gravity', 'pulley_axis'), {'torque': 0.1, 'phase': 0.0}
+                )
+            fits = [self.problem.fitted(one) for one in (self.problem.begun, model)]
+            return Found(states=fits)
+
+    monkeypatch.setattr(session, 'Search', Searching)
+    candidates = everyone(axis, sorted(run.channels))
+    _, found = session._searched(
+        ready, candidates, 1, lambda what, _done: said.append(what), None, Patience(600.0)
+    )
+    assert SIGN in found.final.model.causes
+    assert ('looking again: a sensor may have lost its sign' in said) is looks
+    assert begun_from[0] is None
