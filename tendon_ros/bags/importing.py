@@ -18,9 +18,9 @@ from tendon_ros.base.recording import Channel, FloatArray, Recording, unit_of
 
 BoolArray = NDArray[np.bool_]
 
-#: stamps that stray further from an even spacing are worth a warning [share of the spacing]
 YEAR = 365.25 * 86400.0  # [s]
 LONGEST = 250.0 * YEAR  # since its epoch: what whole nanoseconds can say
+#: stamps that stray further from an even spacing are worth a warning [share of the spacing]
 JITTER = 0.5
 
 

@@ -86,27 +86,25 @@ def belief(ready: Prepared, found: Found) -> Belief:
     :return: what is believed, and what is kept; nothing that happened once is kept for
         prediction, since it will not happen again.
     """
-    causes = found.final.model.causes
-    ahead = early(ready.problem, found.final.model)
-    undone = undoing(ready.problem, found.final) | absorbed(ready.problem, found.final)
+    problem, final = ready.problem, found.final
+    causes = final.model.causes
+    ahead = early(problem, final.model)
+    less = giving_less(problem, final)
+    undone = undoing(problem, final) | absorbed(problem, final) | less
     undone |= ahead.late if ahead else frozenset()
-    less = giving_less(ready.problem, found.final)
-    undone |= less
-    undone |= {k for k, cause in enumerate(causes) if at_bound(cause, found.final.model.values(k))}
+    undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)
     weighed = _all_weighed(ready, found, rest, undone)
     # one that is missed, and may as well have no size, is part of a form that several make up
-    nothing = unsized(ready.problem, found.final) - undone
+    nothing = unsized(problem, final) - undone
     if empty := {k for k in nothing if weighed[k].chance >= NAMED}:
         undone |= empty
         rest = _without(ready, found, undone)
         weighed = _all_weighed(ready, found, rest, undone)
-    able = [
-        k for k in range(len(causes)) if k not in undone and not _open(ready.problem, found, k)
-    ]
+    able = [k for k in range(len(causes)) if k not in undone and not _open(problem, found, k)]
     left = stays(ready, rest)
     together = companies(ready, found, weighed, able, left)
-    if ready.problem.by_misfit and not together:
+    if problem.by_misfit and not together:
         others = [k for k in range(len(causes)) if k not in undone]
         rubs = rubbing(ready, found, weighed, others, left)
         together = [rubs] if rubs else []
@@ -122,7 +120,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         and not cause.instants
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
-        and not takes_noise(ready.problem, found, k)
+        and not takes_noise(problem, found, k)
     }
     return Belief(
         weighed,
