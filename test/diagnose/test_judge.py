@@ -12,12 +12,12 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import (
     chance,
     IDLE,
-    LEFT_NOISE,
     probability,
     Signs,
     signs_beside,
     spoils,
     stays,
+    UNSEEN_NOISE,
 )
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
@@ -129,10 +129,10 @@ def test_what_was_held_out_tells_what_stays_where_it_leaves_more(ready):
     bent = replace(found.final, model=found.start.model)
     held = ready.held.left(found.start.model)
     unseen = ready.held.structured(held)
-    assert unseen > 10.0 * fitted.whole + LEFT_NOISE
-    assert stays(ready, bent).whole == pytest.approx(unseen - LEFT_NOISE)
+    assert unseen > 10.0 * fitted.whole + UNSEEN_NOISE
+    assert stays(ready, bent).whole == pytest.approx(unseen - UNSEEN_NOISE)
     for name, (power, count) in ready.held.structured_by_channel(held).items():
-        least = max(fitted.by_channel[name], power / count - LEFT_NOISE)
+        least = max(fitted.by_channel[name], power / count - UNSEEN_NOISE)
         assert stays(ready, bent).by_channel[name] == pytest.approx(least)
     # and what was fitted tells it where that leaves more
     worse = replace(found.final, left=found.start.left)
