@@ -26,6 +26,8 @@ PUSH = 'disturbance'
 WIDER = 0.3
 #: bins of which at least a motor gives less
 BRIEF = 10
+#: bins that are tried as ends of a stretch, at most: every pair of them is
+ENDS = 256
 
 
 def giving_less(problem: Problem, state: Fit) -> frozenset[int]:
@@ -96,14 +98,14 @@ def _with_less(left: FloatArray, known: FloatArray, time: FloatArray) -> FloatAr
     """Return what stays of a torque if in its best stretch a further part of it is reported."""
     if len(left) <= BRIEF:
         return left
-    cross = np.concatenate([[0.0], np.cumsum(left * known)])
-    power = np.concatenate([[0.0], np.cumsum(known * known)])
+    ends = np.unique(np.linspace(0, len(left), ENDS + 1).round().astype(np.intp))
+    cross = np.concatenate([[0.0], np.cumsum(left * known)])[ends]
+    power = np.concatenate([[0.0], np.cumsum(known * known)])[ends]
     # more is reported than acts: the part has the sign of the torque
     more = np.maximum(cross[None, :] - cross[:, None], 0.0)
     among = np.maximum(power[None, :] - power[:, None], 1e-12)
-    ends = np.arange(len(cross))
     saved = np.where(ends[None, :] - ends[:, None] >= BRIEF, more**2 / among, 0.0)
-    first, last = np.unravel_index(int(np.argmax(saved)), saved.shape)
+    first, last = ends[list(np.unravel_index(int(np.argmax(saved)), saved.shape))]
     # nor does it set in at once
     at_ends = [np.abs(time - time[at]) < SUDDEN for at in (first, last - 1)]
     near = np.logical_or(*at_ends)

@@ -5,7 +5,7 @@ import pytest
 
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.giving_less import giving_less
+from tendon_ros.diagnose.giving_less import _with_less, BRIEF, ENDS, giving_less
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
@@ -73,3 +73,17 @@ def test_only_pushes_on_motors_are_asked(fitted_to):
     push = ('disturbance', 'pulley_3', {'torque': 0.3, **WHEN})
     ready, state = fitted_to((push,), [(Candidate(*push[:2]), push[2])])
     assert giving_less(ready.problem, state) == frozenset()
+
+
+@pytest.mark.parametrize('bins', [BRIEF, 130, 20 * ENDS])
+def test_the_stretch_is_found_in_short_and_long_ones(bins):
+    time = 8e-3 * np.arange(bins)
+    known = 50.0 * np.sin(time) + 60.0
+    less = (time > 0.4 * time[-1]) & (time < 0.7 * time[-1])
+    stays = _with_less(0.5 * known * less, known, time)
+    if bins == BRIEF:
+        assert np.array_equal(stays, 0.5 * known * less)
+    else:
+        assert np.max(np.abs(stays)) <= 2.0
+    # less than nothing is reported by no motor
+    assert np.max(np.abs(_with_less(-0.5 * known * less, known, time))) > 2.0
