@@ -94,15 +94,16 @@ def belief(ready: Prepared, found: Found) -> Belief:
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)
-    weighed = _all_weighed(ready, found, rest, undone)
+    left = stays(ready, rest)
+    weighed = _all_weighed(ready, found, rest, left, undone)
     # one that is missed, and may as well have no size, is part of a form that several make up
     nothing = unsized(problem, final) - undone
     if empty := {k for k in nothing if weighed[k].chance >= NAMED}:
         undone |= empty
         rest = _without(ready, found, undone)
-        weighed = _all_weighed(ready, found, rest, undone)
+        left = stays(ready, rest)
+        weighed = _all_weighed(ready, found, rest, left, undone)
     able = [k for k in range(len(causes)) if k not in undone and not _open(problem, found, k)]
-    left = stays(ready, rest)
     together = companies(ready, found, weighed, able, left)
     if problem.by_misfit and not together:
         others = [k for k in range(len(causes)) if k not in undone]
@@ -133,20 +134,20 @@ def belief(ready: Prepared, found: Found) -> Belief:
 
 
 def _all_weighed(
-    ready: Prepared, found: Found, rest: Fit, undone: Collection[int]
+    ready: Prepared, found: Found, rest: Fit, left: Stays, undone: Collection[int]
 ) -> tuple[Weighed, ...]:
-    """Return what speaks for each cause of the last state, with what stays of the others."""
-    all_leaves = stays(ready, found.final)
-    rest_leaves = all_leaves if rest is found.final else stays(ready, rest)
+    """
+    Return what speaks for each cause of the last state.
+
+    ``rest``: the fit without those that are ``undone``, and ``left``: what that leaves.
+    """
+    final = found.final
+    whole = left if rest is final else stays(ready, final)
+    beside = [
+        whole if _stands_alone(final, rest, k) else left for k in range(len(final.model.causes))
+    ]
     return tuple(
-        _weighed(
-            ready,
-            found,
-            k,
-            all_leaves if _stands_alone(found.final, rest, k) else rest_leaves,
-            k in undone,
-        )
-        for k in range(len(found.final.model.causes))
+        _weighed(ready, found, k, of_others, k in undone) for k, of_others in enumerate(beside)
     )
 
 

@@ -78,9 +78,8 @@ def _left_with_less(
     wider = WIDER * values['duration']
     first, last = values['start'] - wider, values['start'] + values['duration'] + wider
     segments = problem.rollouts.segments
-    within = [
-        (first <= s.time) & (s.time <= last) & cause.acts_in(s.name) for s in segments
-    ]  # what happens then must not bend the rest
+    within = [(first <= s.time) & (s.time <= last) & cause.acts_in(s.name) for s in segments]
+    # what happens then must not bend the rest
     rest = problem.leaving_out(within).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
     known = problem.predicted(rest.model)

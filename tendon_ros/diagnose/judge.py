@@ -285,38 +285,3 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     noise = not happened and takes_noise(ready.problem, found, k)
     believed = not (spoilt or luck or drowned or noise)
     return likely if believed else min(IDLE, likely)
-
-
-#: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
-#: changes with its logarithm
-EVEN, STEEP = 1.6, 2.5
-
-
-def left_over(left: float, form: float) -> float:
-    """
-    Return the probability that something of the gap has a cause that was not named.
-
-    :param left: structured misfit that stays, in noise power per sample.
-    :param form: what the laws of the causes may leave although they are right.
-    :return: 0 to 1.
-    """
-    ratio = max(left, 1e-9) / (LEFT_NOISE + form)
-    return 1.0 / (1.0 + math.exp(-STEEP * math.log(ratio / EVEN)))
-
-
-#: times the misfit of what was fitted that may stay in what was held out
-SURPRISE = 4.0
-
-
-def surprising(ready: Prepared, found: Found) -> bool:
-    """
-    Return whether what was held out holds something that no fit could know of, such as a push.
-
-    :param ready: the problem.
-    :param found: what the search has found.
-    :return: whether to fit the blocks that were held out, and hold out others.
-    """
-    left = ready.problem.structures(found.final.left)[1]
-    unseen = ready.held.structures(ready.held.left(found.final.model))[1]
-    form = form_power(ready.problem, found.start, found.final)
-    return unseen > SURPRISE * (LEFT_NOISE + form + left)

@@ -27,7 +27,7 @@ from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
-from tendon_ros.diagnose.judge import left_over, stays, surprising
+from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
@@ -38,6 +38,7 @@ from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import known_words, loose
+from tendon_ros.diagnose.unexplained import left_over, surprising
 from tendon_ros.diagnose.worth import beyond_laws, hopeless
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
