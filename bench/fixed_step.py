@@ -117,7 +117,8 @@ class FixedStep:
                     f'{self._instrument.name}: the fixed-step simulation diverged near '
                     f'{c[at["CLOCK"]]:.4f} s; ask for a smaller step'
                 )
-        return Rows(self._instrument, at, np.array(rows).reshape(-1, run.width))
+        table = np.array(rows).reshape(-1, run.width)
+        return Rows(self._instrument, at, table, len(wished) * self._steps)
 
     def _begin(self) -> None:
         """Let the kernel see anew which pulleys stick, slide which way, and what touches."""

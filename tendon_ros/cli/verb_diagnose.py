@@ -35,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--minutes',
         type=float,
         metavar='M',
-        help='that it may take, about: the search for causes is cut short for that; 0: no limit; '
-        'default: 10',
+        help='that it may take on two cores, about: the search for causes is cut short for that, '
+        'counted in steps of the model so that another run comes as far; 0: no limit; default: 10',
     )
     parser.add_argument(
         '--overwrite',

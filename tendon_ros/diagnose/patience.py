@@ -1,4 +1,9 @@
-"""How long a search may take: what has run out of it ends with what was found so far."""
+"""
+How much a search may do: what has run out of it ends with what was found so far.
+
+It is counted in steps of the model, not by the clock: the same recordings and file give the same
+answer on a busy machine as on a quiet one.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +12,13 @@ import math
 import time
 
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.effort import Effort
 
-#: [s] that a diagnosis may take: most take one or two minutes; guesses of many bodies, and loops
-#: that shake, take more
-USUAL = 600.0
+#: [s] that a diagnosis may take of so many cores: most take one or two minutes; guesses of many
+#: bodies, and loops that shake, take more
+USUAL, CORES = 600.0, 2
+#: times as long by the clock after which it ends all the same: one core takes twice as long
+BY_CLOCK = 3.0
 #: part of it that the search may: what it has found must be weighed, too; and in which it looks
 #: for causes: a cause that nobody was tried in the place of is not named
 SEARCHES, LOOKS = 0.7, 0.35
@@ -22,13 +30,16 @@ class Patience:
     """
     Runs out before a diagnosis has taken its time.
 
-    :param seconds: that the diagnosis may take from now on; endless by default.
+    :param seconds: of two cores that the diagnosis may take from now on; endless by default.
+    :param effort: that counts what it takes; the clock alone where None.
     """
 
-    def __init__(self, seconds: float = math.inf) -> None:
+    def __init__(self, seconds: float = math.inf, effort: Effort | None = None) -> None:
         self._seconds = seconds
+        self._effort = effort or Effort()
+        self._spent = self._effort.seconds
         self._began = time.monotonic()
-        self._cut = self._unasked = self._short = False
+        self._cut = self._unasked = self._short = self._clocked = False
 
     @property
     def late(self) -> bool:
@@ -56,8 +67,11 @@ class Patience:
         return self._unasked
 
     def _past(self, part: float) -> bool:
-        """Return whether a part of the time is up."""
-        return time.monotonic() > self._began + part * self._seconds
+        """Return whether a part of what it may take is spent."""
+        allowed = part * self._seconds
+        late = time.monotonic() > self._began + BY_CLOCK * allowed
+        self._clocked |= late
+        return late or self._effort.seconds - self._spent > CORES * allowed
 
     def words(self, unmet: Sequence[Candidate]) -> list[str]:
         """
@@ -77,4 +91,10 @@ class Patience:
         if unmet:
             names = ', '.join(f'{c.effect} at {c.place}' for c in unmet)
             told += f', before others were tried in the place of {names}: not named for that'
-        return [f'{told}. A longer limit (--minutes) lets it come to its end.', *unasked]
+        told += '. A longer limit (--minutes) lets it come to its end'
+        if self._clocked:
+            told += (
+                '; the clock ended it, since this machine was slow or busy: another run may come '
+                'further'
+            )
+        return [f'{told}.', *unasked]

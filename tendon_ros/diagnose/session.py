@@ -86,7 +86,7 @@ def diagnose(
     :param plan: whether to look for the next experiment.
     :param report: called with what is being done and the part that is done, 0 to 1.
     :param memory: keeps the steps, so that an interrupted run goes on.
-    :param seconds: that it may take, about: the search is cut short for that.
+    :param seconds: of two cores that it may take, about: the search is cut short for that.
     :return: the outcome.
     :raises RecordingError: on recordings that cannot be diagnosed.
     """
@@ -99,7 +99,7 @@ def diagnose(
     ready, instrument, held_on = as_set(prepared(runs, instrument, jobs), runs, instrument, jobs)
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
-    patience = Patience(seconds)
+    patience = Patience(seconds, ready.problem.rollouts.effort)
     ready = leaning(ready, candidates, report)
     ready, found = _searched(ready, candidates, jobs, report, memory, patience)
     problem = ready.problem

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
+from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.segment import Segment
 from tendon_ros.identify.step_size import fineness, TOLERANCE
 from tendon_ros.identify.true_motion import true_motion
@@ -42,6 +43,7 @@ class Rollouts:
     :param segments: what was measured.
     :param jobs: threads for predictions that do not depend on each other.
     :param tolerance: of a step [rad]; as fine as the counts ask for where None.
+    :param effort: where what predictions cost is counted; its own where None.
     """
 
     def __init__(
@@ -50,10 +52,12 @@ class Rollouts:
         segments: Sequence[Segment],
         jobs: int = 1,
         tolerance: float | None = None,
+        effort: Effort | None = None,
     ) -> None:
         self.instrument = instrument
         self.segments = tuple(segments)
         self.jobs = jobs
+        self.effort = effort or Effort()
         self.tolerance = TOLERANCE * fineness(instrument) if tolerance is None else tolerance
         self._pool = ThreadPoolExecutor(jobs) if jobs > 1 else None
         plain = tuple(replace(s, resolution=0.0, noise=0.0) for s in instrument.sensors)
@@ -84,14 +88,14 @@ class Rollouts:
 
     def like(self, segments: Sequence[Segment], tolerance: float | None = None) -> Rollouts:
         """
-        Return rollouts of other segments.
+        Return rollouts of other segments, which count as effort of these.
 
         :param segments: what was measured.
         :param tolerance: of a step [rad]; as accurate as these where None.
         :return: the rollouts.
         """
         accurate = self.tolerance if tolerance is None else tolerance
-        return Rollouts(self.instrument, segments, self.jobs, accurate)
+        return Rollouts(self.instrument, segments, self.jobs, accurate, self.effort)
 
     @cached_property
     def measured(self) -> tuple[FloatArray, ...]:
@@ -137,10 +141,12 @@ class Rollouts:
         """
         found = []
         for n, own in enumerate(uses):
+            segment = self.segments[n]
             if asked is None or asked[n]:
-                found.append(self._one(n, tuple(own)))
+                rows, steps = self._one(n, tuple(own))
+                self.effort.spend(steps, len(segment.time))
+                found.append(rows)
             else:
-                segment = self.segments[n]
                 found.append(np.zeros((len(segment.measured), len(segment.time))))
         return tuple(found)
 
@@ -193,19 +199,23 @@ class Rollouts:
         rows = follow(base, arrays, motion, len(segment.time) - 1, pose=segment.pose)
         return rows, arrays.numbers
 
-    def _computed(self, n: int, uses: tuple[EffectUse, ...]) -> FloatArray:
-        """Return all channels of a segment; nobody may write into what is remembered."""
+    def _computed(self, n: int, uses: tuple[EffectUse, ...]) -> tuple[FloatArray, int]:
+        """Return all channels of a segment, and steps; nobody may write into what is kept."""
         segment = self.segments[n]
+        steps = 0
         try:
             rows, numbers = self._rolled(n, uses)
+            steps = rows.steps
             found = self._told(n, rows, numbers)
             for late, channels in self._between_bins(n, numbers).items():
                 names = [segment.measured[row].sensor.name for row in channels]
-                found[channels] = self._told(n, *self._rolled(n, uses, late, names))[channels]
+                later, numbers_then = self._rolled(n, uses, late, names)
+                steps += later.steps
+                found[channels] = self._told(n, later, numbers_then)[channels]
         except (SimulationError, EffectError):
-            return np.full((len(segment.measured), len(segment.time)), np.inf)
+            return np.full((len(segment.measured), len(segment.time)), np.inf), steps
         found.flags.writeable = False
-        return found
+        return found, steps
 
     def _told(self, n: int, rows: Rows, numbers: Numbers) -> FloatArray:
         """Return what a recording would have of what the model does."""

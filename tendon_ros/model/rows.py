@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,11 +21,13 @@ class Rows:
     What happened at each recorded tick, in the instrument's order and SI units.
 
     ``table``, shape (ticks, columns), is the kernel's record; the properties are views of it.
+    ``steps`` is how many steps the integrator tried for them.
     """
 
     instrument: Instrument
     structure: Structure
     table: FloatArray
+    steps: int
 
     def __len__(self) -> int:
         return len(self.table)
@@ -89,3 +92,15 @@ class Rows:
     def reading(self) -> FloatArray:
         """What the sensors say, shape (ticks, sensors), in the instrument's order of sensors."""
         return self._columns(self.structure['READINGS'], len(self.instrument.sensors))
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """
+    Join rows that follow each other.
+
+    :param parts: of one simulation, at least one.
+    :return: all of them.
+    """
+    first = parts[0]
+    table = np.concatenate([rows.table for rows in parts])
+    return Rows(first.instrument, first.structure, table, sum(rows.steps for rows in parts))

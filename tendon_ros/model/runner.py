@@ -53,6 +53,11 @@ class Runner:
         return dict(zip(('steps', 'rejected', 'events'), found, strict=True))
 
     @property
+    def _tried(self) -> int:
+        """Steps so far, those that were rejected as well."""
+        return self.counts['steps'] + self.counts['rejected']
+
+    @property
     def width(self) -> int:
         """Columns of a recorded row."""
         return self.structure['READINGS'] + len(self.instrument.sensors)
@@ -119,6 +124,7 @@ class Runner:
         :raises SimulationError: where it diverges.
         """
         at = self.structure
+        before = self._tried
         last = self.tick + ticks - (0 if smoothly else 1)
         count = last // every - (self.tick - 1) // every
         rows = self.engine.zeros(count * self.width)
@@ -146,7 +152,7 @@ class Runner:
             )
         written = int(self._carried[at['ROW']])
         table = np.asarray(rows, dtype=np.float64).reshape(-1, self.width)[:written]
-        return Rows(self.instrument, at, table)
+        return Rows(self.instrument, at, table, self._tried - before)
 
     def glide(self, end: float, signals: Signals) -> Rows:
         """
@@ -158,6 +164,7 @@ class Runner:
         :raises SimulationError: where it diverges.
         """
         at = self.structure
+        before = self._tried
         row = self.engine.zeros(self.width)
         status = self.engine.module.glide(
             self._m,
@@ -172,7 +179,8 @@ class Runner:
         )
         if status != 0:
             raise SimulationError(f'{self.instrument.name}: the model diverged near {end:.4f} s')
-        return Rows(self.instrument, at, np.array(row, dtype=np.float64).reshape(1, -1))
+        table = np.array(row, dtype=np.float64).reshape(1, -1)
+        return Rows(self.instrument, at, table, self._tried - before)
 
     def place(self, angle: FloatArray, velocity: FloatArray) -> None:
         """

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 import math
 
-import numpy as np
-
 from tendon_ros import __version__
 from tendon_ros.base.errors import TrajectoryError
 from tendon_ros.base.recording import Recording
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_text import text_of
 from tendon_ros.model.recorded import recording_of
-from tendon_ros.model.rows import Rows
+from tendon_ros.model.rows import joined
 from tendon_ros.model.simulation import Simulation
 from tendon_ros.model.trajectory import check_limits, Trajectory
 
@@ -70,15 +68,13 @@ def simulate(
     setpoints = trajectory.ordered([m.name for m in instrument.motors]).sample(period)
     first = dict(zip(instrument.driven, setpoints[0], strict=True))
     simulation = Simulation(instrument, seed=seed, engine=engine, pose=first)
-    tables = []
+    parts = []
     for start in range(0, len(setpoints), CHUNK):
-        rows = simulation.run(setpoints[start : start + CHUNK], every)
-        tables.append(rows.table)
+        parts.append(simulation.run(setpoints[start : start + CHUNK], every))
         if progress is not None:
             progress(min(1.0, (start + CHUNK) / len(setpoints)))
-    whole = Rows(instrument, rows.structure, np.concatenate(tables))
     return recording_of(
-        whole,
+        joined(parts),
         setpoints[::every],
         name=f'{instrument.name}_{trajectory.name}',
         epoch_ns=FIRST_STAMP_NS,

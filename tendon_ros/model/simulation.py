@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.layout import Arrays, arrays_of, Layout
-from tendon_ros.model.rows import Rows
+from tendon_ros.model.rows import joined, Rows
 from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
 
@@ -102,13 +102,14 @@ class Simulation:
         if not self._references:
             noise = self._draw(len(wished))
             return self._runner.advance(wished, len(wished), every=every, noise=noise)
-        tables = [
-            self._runner.advance(
-                row, 1, every=every, signals=Signals.held(row), noise=self._draw(1)
-            ).table
-            for row in wished
-        ]
-        return Rows(self._instrument, self._runner.structure, np.concatenate(tables))
+        return joined(
+            [
+                self._runner.advance(
+                    row, 1, every=every, signals=Signals.held(row), noise=self._draw(1)
+                )
+                for row in wished
+            ]
+        )
 
     def follow(self, setpoints: FloatArray | Signals, every: int = 1) -> Rows:
         """

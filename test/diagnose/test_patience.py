@@ -12,27 +12,34 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.effort import Effort
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 GAIN = Candidate('torque_gain', 'motor_L')
 
 
-def test_it_runs_out_once_and_for_all(monkeypatch):
-    now = [100.0]
-    monkeypatch.setattr(clocked.time, 'monotonic', lambda: now[0])
-    patience = Patience(60.0)
+class Spent(Effort):
+    """Seconds of one core, as told."""
+
+    seconds = 0.0
+
+
+def test_it_runs_out_by_what_is_spent_once_and_for_all():
+    effort = Spent()
+    effort.seconds = 1000.0  # before its time
+    patience = Patience(60.0, effort)
     assert not patience.over
     assert not patience.late
     assert patience.words([COULOMB]) == []
-    now[0] += 22.0  # half of which it looks for causes
+    effort.seconds += 2 * 22.0  # of two cores; in a part of it it looks for causes
     assert patience.late
     assert not patience.over
     assert 'cut short' in patience.words([])[0]
     assert not patience.half
-    now[0] += 9.0
+    effort.seconds += 2 * 9.0
     assert patience.half
-    patience = Patience(60.0)
-    now[0] += 43.0  # seven tenths of it are the search's
+    patience = Patience(60.0, effort)
+    effort.seconds += 2 * 43.0  # seven tenths of it are the search's
     # nobody has asked since: nothing was left out
     assert patience.words([]) == []
     assert patience.over
@@ -40,14 +47,27 @@ def test_it_runs_out_once_and_for_all(monkeypatch):
     assert '1 min' in told
     assert 'coulomb_friction at pulley_3' in told
     assert '--minutes' in told
+    assert 'clock' not in told
     assert 'coulomb_friction' not in patience.words([])[0]
     assert not patience.ended
-    now[0] += 18.0
+    effort.seconds += 2 * 18.0
     assert patience.ended
     assert 'what would separate' in patience.words([])[1]
-    now[0] = 0.0
+    effort.seconds = 0.0
     assert patience.over
     assert patience.ended
+
+
+def test_the_clock_ends_it_on_a_machine_that_is_far_too_slow(monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(clocked.time, 'monotonic', lambda: now[0])
+    patience = Patience(60.0)
+    now[0] += 2 * 60.0
+    assert not patience.over
+    now[0] += 10.0
+    assert patience.over
+    [told] = patience.words([])
+    assert 'the clock ended it' in told
 
 
 def test_without_a_limit_it_never_does():
@@ -70,6 +90,21 @@ def test_what_no_rival_has_met_is_not_named(bench, rubbing):
     whole = Search(ready.problem, [COULOMB, GAIN], 1, begun=begun).run()
     assert whole.unmet == []
     assert belief(ready, whole).weighed[0].chance >= NAMED
+
+
+def test_a_busy_machine_changes_nothing(bench, rubbing):
+    """What a search may do is counted in steps of the model, on however many threads."""
+    spent = []
+    for jobs in (1, 2):
+        ready = prepared([rubbing], bench, jobs)
+        effort = ready.problem.rollouts.effort
+        patience = Patience(2.0, effort)
+        begun = ready.problem.empty.joined(COULOMB, {'torque': 0.08})
+        everyone_ = [COULOMB, GAIN]
+        Search(ready.problem, everyone_, jobs, begun=begun, patience=patience).run()
+        spent.append(effort.seconds)
+    assert spent[0] > 0.0
+    assert spent[0] == spent[1]
 
 
 def test_a_diagnosis_that_had_no_time_says_so(bench, rubbing):
