@@ -23,6 +23,7 @@ from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.further import misleads
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
@@ -48,6 +49,11 @@ from tendon_ros.model.instrument import Instrument
 
 Report = Callable[[str, float], None]
 
+#: said where numbers of the file were not moved
+ASTRAY = (
+    'the numbers of the file are left as they are: moved within their tolerances to what nothing '
+    'explains, they foretell what was held out worse than the file does'
+)
 LOOSENED = 2  # times that the numbers of a file may turn out to be less well known than supposed
 
 
@@ -118,11 +124,16 @@ def diagnose(
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
     final = heard.problem.centred(heard.problem.fitted(model, rounds=6, accuracy=1e-4))
+    file = heard.problem.empty
+    # numbers that went along with something unknown say nothing of the machine
+    astray = not kept and misleads(heard.held, file, final.model)
+    if astray:
+        final = heard.problem.centred(heard.problem.fitted(file, rounds=0))
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]
     beside = [cause for k, cause in zip(kept, told, strict=True) if k not in held.named]
-    channels = gaps(heard.held, heard.held.empty, final.model)
+    channels = gaps(heard.held, file, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
@@ -155,6 +166,7 @@ def diagnose(
             *held_on,
             *([early_words(held.early)] if held.early else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
+            *([ASTRAY] if astray else []),
             *gather.absurd_words(moved),
             *patience.words(found.unmet),
         ),

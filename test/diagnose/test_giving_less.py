@@ -8,6 +8,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.giving_less import _with_less, BRIEF, ENDS, giving_less
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
 
 EFFORT = 'actuator/pulley_M/effort'
@@ -87,3 +88,14 @@ def test_the_stretch_is_found_in_short_and_long_ones(bins):
         assert np.max(np.abs(stays)) <= 2.0
     # less than nothing is reported by no motor
     assert np.max(np.abs(_with_less(-0.5 * known * less, known, time))) > 2.0
+
+
+def test_what_went_along_with_it_is_not_written(bench, measured_on, spoilt):
+    """Numbers within tolerance, moved to what nothing explains, foretell worse than the file."""
+    runs = spoilt((measured_on(bench),), EFFORT, dipped)
+    outcome = diagnose(runs, bench, jobs=1, plan=False)
+    assert outcome.diagnosis.verdict == 'unexplained'
+    assert any('left as they are' in line for line in outcome.diagnosis.left_out)
+    assert all(gap.after == gap.before for gap in outcome.diagnosis.gap)
+    assert outcome.instrument.pulleys == bench.pulleys
+    assert outcome.instrument.loops == bench.loops
