@@ -69,7 +69,8 @@ def next_experiments(
         others = [model.use(n) for n in range(len(model.causes)) if n not in open_ones]
         settled = replace(instrument, effects=in_force(instrument.effects, others))
         try:
-            suggestions = together(separating(settled, measured, pairs, jobs))
+            effort = problem.rollouts.effort
+            suggestions = together(separating(settled, measured, pairs, jobs, effort))
         except TendonError:
             continue
         worth = [s for s in suggestions if s.seconds <= LONGEST]

@@ -16,6 +16,7 @@ import math
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.axis import Axis
+from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation_channel import channels, Sensed
 from tendon_ros.identify.excitation_evidence import CYCLES, Evidence
 from tendon_ros.identify.excitation_motion import library, Motion
@@ -58,7 +59,11 @@ class Suggestion:
 
 
 def separating(
-    instrument: Instrument, measured: Sequence[str], pairs: Sequence[Pair], jobs: int = 2
+    instrument: Instrument,
+    measured: Sequence[str],
+    pairs: Sequence[Pair],
+    jobs: int = 2,
+    effort: Effort | None = None,
 ) -> list[Suggestion]:
     """
     Return the experiments that would tell explanations apart.
@@ -68,6 +73,7 @@ def separating(
     :param pairs: what recordings could not tell apart: the one that is taken to hold, and the one
         that imitates it; None in its place for the file as it is.
     :param jobs: threads.
+    :param effort: where what it costs is counted, if anywhere.
     :return: for each pair each motion with each channel, best first.
     :raises EffectError: where an effect cannot act at its place.
     :raises RecordingError: where a motor has no encoder.
@@ -87,7 +93,8 @@ def separating(
         fitting(instrument, wished[0])  # alone: a kernel is loaded once, not by two threads
         motions = [m for m in pool.map(partial(fitting, instrument), wished) if m is not None]
         tasks = [(motion, group) for group in rivals.values() for motion in motions]
-        tried = pool.map(lambda task: _tried(instrument, sensed, movable, *task), tasks)
+        effort = effort or Effort()
+        tried = pool.map(lambda task: _tried(instrument, sensed, movable, effort, *task), tasks)
         return sorted((s for found in tried for s in found), key=lambda s: s.order)
 
 
@@ -118,13 +125,14 @@ def _tried(
     instrument: Instrument,
     sensed: Sequence[Sensed],
     movable: Sequence[Tolerance],
+    effort: Effort,
     motion: Motion,
     pairs: Sequence[Pair],
 ) -> list[Suggestion]:
     """Return what one motion tells of pairs with the same first explanation."""
     found = []
     try:
-        trial = Trial(instrument, sensed, movable, motion, pairs[0][0])
+        trial = Trial(instrument, sensed, movable, motion, pairs[0][0], effort)
         for truth, rival in pairs:
             rounds = trial.evidence(rival)
             names = [(e[0].effect, e[0].place) for e in (truth, rival) if e is not None]

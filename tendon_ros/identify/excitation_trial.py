@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate, Values
 from tendon_ros.identify.driving import motor_channels
+from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
@@ -66,6 +67,7 @@ class Trial:
     :param tolerances: what else may move.
     :param motion: the motion.
     :param truth: the explanation that holds.
+    :param effort: where what it costs is counted.
     :raises SimulationError: where the rig cannot perform the motion.
     :raises EffectError: where the effect cannot act at its place.
     """
@@ -77,7 +79,9 @@ class Trial:
         tolerances: Sequence[Tolerance],
         motion: Motion,
         truth: Explanation,
+        effort: Effort,
     ) -> None:
+        self._effort = effort
         self._base = touching(instrument, motion)
         self._sensed = tuple(sensed)
         self._truth = _again(*truth)
@@ -208,6 +212,7 @@ class Trial:
         arrays = along(instrument, segment.prescribed, tolerance=ACCURACY).arrays(effects)
         motion = true_motion(instrument, arrays.numbers, segment)
         rows = follow(instrument, arrays, motion, len(segment.time) - 1)
+        self._effort.spend(rows.steps, len(segment.time))
         found = np.array([s.reading(rows) for s in self._sensed])
         _add_cut_off(found, self._sensed, instrument, arrays.numbers, drive.reported)
         return found[:, self._used]
