@@ -21,9 +21,9 @@ USUAL, CORES = 600.0, 2
 BY_CLOCK = 3.0
 #: part of it that the search may: what it has found must be weighed, too; and in which it looks
 #: for causes: a cause that nobody was tried in the place of is not named
-SEARCHES, LOOKS = 0.7, 0.35
+SEARCHES, LOOKS = 0.8, 0.35
 #: part of it in which it looks for what foretells more of a machine, of which little is named
-FORETELLS = 0.5
+FORETELLS = 0.6
 
 
 class Patience:

@@ -16,7 +16,7 @@ from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.worth import open_question
 from tendon_ros.identify.afar import afar, aside
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def nudged(steps: Steps, state: Fit) -> Fit:
         begun = aside(problem, state.model)
         if not (begun and little and open_question(problem, state)):
             break
-        rough = _rough(steps, begun, problem.slopes(state), rounds=6)
+        rough = _rough(steps, problem, begun, rounds=6, known=problem.slopes(state))
         # what has come back leaves the very same, however far numbers are that nothing tells
         least = (1.0 - NUDGED) * state.cost
         away = [fit for fit in rough if float(np.sum((fit.left - state.left) ** 2)) > least]
@@ -81,18 +81,20 @@ def from_afar(steps: Steps, model: Model) -> Fit | None:
     :param model: causes.
     :return: the best fit; None where guesses need not be looked for from afar.
     """
-    return _ended(steps, _rough(steps, afar(steps.problem, model)), steps.settled)
+    # which way to go is told by a few of many recordings
+    glance = steps.problem.rougher()
+    return _ended(steps, _rough(steps, glance, afar(glance, model), rounds=12), steps.settled)
 
 
 def _rough(
     steps: Steps,
+    problem: Problem,
     begun: Sequence[Model],
+    rounds: int,
     known: Mapping[str, FloatArray] | None = None,
-    rounds: int = 12,
 ) -> list[Fit]:
     """Return rough fits from several beginnings."""
-    fit = steps.problem.fitted
-    return list(steps.pool.map(lambda m: fit(m, known, rounds, accuracy=1e-2), begun))
+    return list(steps.pool.map(lambda m: problem.fitted(m, known, rounds, accuracy=1e-2), begun))
 
 
 def _ended(steps: Steps, rough: Sequence[Fit], end: Callable[[Model], Fit]) -> Fit | None:
