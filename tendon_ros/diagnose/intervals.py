@@ -51,11 +51,12 @@ class Spread:
 
     :param problem: the data.
     :param fit: the fit.
+    :param known: unknowns that are taken for known, shape (unknowns,); none where None.
     """
 
-    def __init__(self, problem: Problem, fit: Fit) -> None:
+    def __init__(self, problem: Problem, fit: Fit, known: NDArray[np.bool_] | None = None) -> None:
         axes = problem.axes(fit.model)
-        self._white = problem.covariance(fit)
+        self._white = problem.covariance(fit, None if known is None else ~known)
         cluster = problem.clusters(CLUSTER)
         scores = fit.slope * fit.left[:, None]
         sums = np.zeros((int(cluster.max()) + 1 if len(cluster) else 1, len(axes)))
@@ -82,15 +83,18 @@ class Spread:
         return np.asarray(np.sqrt(np.maximum(*found).clip(min=0.0)), dtype=np.float64)
 
 
-def parameter_intervals(problem: Problem, fit: Fit) -> list[dict[str, tuple[float, float]]]:
+def parameter_intervals(
+    problem: Problem, fit: Fit, known: NDArray[np.bool_] | None = None
+) -> list[dict[str, tuple[float, float]]]:
     """
     Return the 95 % intervals of every cause's parameters.
 
     :param problem: the data.
     :param fit: the fit.
+    :param known: unknowns that are taken for known, shape (unknowns,); none where None.
     :return: for each cause, low and high by parameter, in its unit.
     """
-    spread = Spread(problem, fit)
+    spread = Spread(problem, fit, known)
     found = []
     at = 0
     for cause, z in zip(fit.model.causes, fit.model.z, strict=True):
@@ -121,12 +125,17 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     """
     Return the causes of which not even whether they are there can be told by their sizes.
 
+    Where a torque constant is guessed, friction may be as small as that may be large: it is there
+    all the same, whatever its unit.
+
     :param problem: the data.
     :param fit: the fit.
     :return: those of which every size may as well be none.
     """
     found = set()
-    rows = parameter_intervals(problem, fit)
+    units = [t.guessed and t.quantity == 'torque_gain' for t in problem.tolerances]
+    own = fit.slope.shape[1] - len(units)
+    rows = parameter_intervals(problem, fit, np.array([False] * own + units))
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
         sizes = [
             p for p in cause.parameters if not (p.is_shape or p.search in ('share', 'switch'))

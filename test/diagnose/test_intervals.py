@@ -128,6 +128,8 @@ def test_no_number_of_recordings_tells_the_scale_of_what_is_guessed(measured_on)
         [interval] = parameter_intervals(problem, fit)
         low, high = interval['torque']
         assert low < 0.06 < high
+        # it is there, whatever the unit of torque
+        assert unsized(problem, fit) == frozenset()
         # parts of what was found: each fit ends where it likes on the way along the scale
         widths.append((high - low) / fit.model.values(0)['torque'])
     assert widths[1] > 0.5 * widths[0]
