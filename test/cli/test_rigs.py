@@ -12,6 +12,7 @@ from tendon_ros.bags.importing import import_runs
 from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.base.resources import config_path
 from tendon_ros.cli.main import main
+from tendon_ros.diagnose.session import diagnose
 from tendon_ros.model.instrument_file import load_instrument
 
 ROOT = Path(__file__).parents[2]
@@ -75,6 +76,16 @@ def test_a_recording_fits_its_instrument(page):
         effort = run[f'{joint}/effort'].at(angle.time[1:])
         work += float(np.sum(effort * np.diff(angle.value)))
     assert work > 0.0  # torques point along the motion: friction takes what the motors give
+
+
+@pytest.mark.parametrize(('rig', 'place'), [('driven_axis', 'axis'), ('pendulum_arm', 'arm')])
+def test_of_a_single_body_the_friction_is_found(rig, place):
+    """What the pages say of the simulated recordings; those of many bodies take longer."""
+    mapping = load_mapping(config_path(f'imports/{rig}.yaml'))
+    runs = [*import_runs(ROOT / 'docs' / 'rigs' / f'{rig}.csv', mapping)]
+    found = diagnose(runs, load_instrument(rig), jobs=2, plan=False).diagnosis
+    assert [(c.effect, c.place) for c in found.causes] == [('coulomb_friction', f'pulley_{place}')]
+    assert found.verdict == 'explained'
 
 
 def test_the_tachometer_keeps_its_clock():
