@@ -123,12 +123,11 @@ def diagnose(
     kept = held.kept if held.named or beyond >= NAMED else ()
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
-    final = heard.problem.centred(heard.problem.fitted(model, rounds=6, accuracy=1e-4))
+    final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
     file = heard.problem.empty
     # numbers that went along with something unknown say nothing of the machine
     astray = not kept and misleads(heard.held, file, final.model)
-    if astray:
-        final = heard.problem.centred(heard.problem.fitted(file, rounds=0))
+    final = heard.problem.centred(heard.problem.fitted(file, rounds=0) if astray else final)
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]

@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.base.errors import EffectError, SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.rows import joined
 from tendon_ros.model.simulation import Simulation
 
 LATE = EffectUse('sensor_delay', 'encoder_M', {'time': 0.0123})
@@ -128,3 +129,15 @@ def test_setpoints_are_checked(bench_rig):
         simulation.run(bad)
     with pytest.raises(SimulationError, match='sampled; use run'):
         simulation.follow(np.zeros((5, 2)))
+
+
+def test_rows_say_how_many_steps_they_took(bench_rig, press):
+    rig = bench_rig.five_pulleys()
+    whole, parts = Simulation(rig), Simulation(rig)
+    wished = press[:40]
+    rows = whole.run(wished)
+    assert rows.steps == whole.counts['steps'] + whole.counts['rejected']
+    halves = [parts.run(wished[:25]), parts.run(wished[25:])]
+    both = joined(halves)
+    assert both.steps == sum(half.steps for half in halves) == rows.steps
+    assert np.array_equal(both.table, rows.table)
