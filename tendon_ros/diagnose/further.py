@@ -83,16 +83,3 @@ def foretells(held: Problem, poorer: Model, model: Model) -> bool:
     """
     gain = saved(held, poorer, model)
     return float(gain.sum()) > float(np.sqrt(gain @ gain))
-
-
-def misleads(held: Problem, poorer: Model, model: Model) -> bool:
-    """
-    Return whether a model foretells what no fit has seen worse, by more than chance.
-
-    :param held: blocks that were held out.
-    :param poorer: the model that it is held against.
-    :param model: the model.
-    :return: whether it loses more than seconds of no meaning would on average.
-    """
-    gain = saved(held, poorer, model)
-    return float(gain.sum()) < -float(np.sqrt(gain @ gain))

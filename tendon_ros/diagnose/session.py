@@ -23,7 +23,7 @@ from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.further import misleads
+from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
@@ -126,7 +126,7 @@ def diagnose(
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
     file = heard.problem.empty
     # numbers that went along with something unknown say nothing of the machine
-    astray = not kept and misleads(heard.held, file, final.model)
+    astray = not kept and foretells(heard.held, final.model, file)
     final = heard.problem.centred(heard.problem.fitted(file, rounds=0) if astray else final)
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)
