@@ -17,6 +17,7 @@ from tendon_ros.diagnose.worth import open_question
 from tendon_ros.identify.afar import afar, aside
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.residuals import FEW
 
 FloatArray = NDArray[np.float64]
 
@@ -81,8 +82,9 @@ def from_afar(steps: Steps, model: Model) -> Fit | None:
     :param model: causes.
     :return: the best fit; None where guesses need not be looked for from afar.
     """
+    problem = steps.problem
     # which way to go is told by a few of many recordings
-    glance = steps.problem.rougher()
+    glance = problem.rougher() if len(problem.rollouts.segments) > FEW else problem
     return _ended(steps, _rough(steps, glance, afar(glance, model), rounds=12), steps.settled)
 
 

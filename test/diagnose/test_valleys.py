@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tendon_ros.blind.case import made, Settings
+from tendon_ros.diagnose import valleys
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.valleys import nudged
@@ -41,3 +43,18 @@ def test_nothing_is_nudged_where_nothing_is_guessed(bench, measured_on):
     problem = prepared([run], bench).problem
     start = problem.fitted(problem.empty)
     assert nudged(Steps(problem, [], 1, lambda *_: None), start) is start
+
+
+@pytest.mark.parametrize(('count', 'seen'), [(2, 2), (7, 5)])
+def test_of_many_recordings_a_few_tell_where_guesses_begin(
+    bench, measured_on, monkeypatch, count, seen
+):
+    """And few are looked at as they are: a rougher look has led into the wrong valley."""
+    runs = [measured_on(bench, seed=s, name=f'run_{s}') for s in range(count)]
+    problem = prepared(runs, bench).problem
+    asked = []
+    monkeypatch.setattr(valleys, 'afar', lambda of, _model: asked.append(of) or [])
+    assert valleys.from_afar(Steps(problem, [], 1, lambda *_: None), problem.begun) is None
+    [of] = asked
+    assert len(of.rollouts.segments) == seen
+    assert (of is problem) == (count == seen)
