@@ -93,8 +93,8 @@ def separating(
         fitting(instrument, wished[0])  # alone: a kernel is loaded once, not by two threads
         motions = [m for m in pool.map(partial(fitting, instrument), wished) if m is not None]
         tasks = [(motion, group) for group in rivals.values() for motion in motions]
-        effort = effort or Effort()
-        tried = pool.map(lambda task: _tried(instrument, sensed, movable, effort, *task), tasks)
+        counted = effort or Effort()
+        tried = pool.map(lambda task: _tried(instrument, sensed, movable, counted, *task), tasks)
         return sorted((s for found in tried for s in found), key=lambda s: s.order)
 
 

@@ -55,7 +55,8 @@ class Runner:
     @property
     def _tried(self) -> int:
         """Steps so far, those that were rejected as well."""
-        return self.counts['steps'] + self.counts['rejected']
+        at = self.structure['COUNT']
+        return int(self._modes[at]) + int(self._modes[at + 1])
 
     @property
     def width(self) -> int:
