@@ -40,7 +40,7 @@ from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import known_words, loose
 from tendon_ros.diagnose.unexplained import left_over, surprising
-from tendon_ros.diagnose.worth import beyond_laws, hopeless
+from tendon_ros.diagnose.worth import beyond_laws, hopeless, worthwhile
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import Model
@@ -215,8 +215,12 @@ def _searched(
         imitated = beyond_laws(ready.problem, found.start, found.final)
         if not imitated or sign in found.final.model.causes or patience.over:
             continue
+        begun = ready.problem.fitted(lost(ready.problem.begun, sign))
+        # begun with a sign that nobody needs, a search would only do the same again
+        if not worthwhile(ready.problem, found.start, found.start, begun):
+            continue
         report('looking again: a sensor may have lost its sign', 0.0)
-        other = search(ready.problem.fitted(lost(ready.problem.begun, sign)).model)
+        other = search(begun.model)
         if other.final.cost < GAINED * found.final.cost:
             found = other
     again = ready.heard_again(found.final.model)
@@ -236,9 +240,9 @@ def _searched(
         if wider is None:
             break
         report('looking again: the numbers of the file are not that well known', 0.0)
-        begun = wider.begun(ready, found)
+        known = wider.begun(ready, found)
         ready = ready.loosened(wider.looser)
-        found = search(begun)
+        found = search(known)
     return ready, found
 
 

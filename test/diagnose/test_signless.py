@@ -12,6 +12,8 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.worth import beyond_laws
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -100,3 +102,29 @@ def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
     assert SIGN in found.final.model.causes
     assert ('looking again: a sensor may have lost its sign' in said) is looks
     assert begun_from[0] is None
+
+
+def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
+    # so weak that most of the torque is the inertia's: its sign cannot be made up
+    run = recorded(('joint_spring', 'pulley_axis', {'stiffness': 0.1, 'rest': 0.0}))
+    ready = prepared([run], axis)
+    said = []
+
+    class Searching:
+        """Goes astray."""
+
+        def __init__(self, problem, *_):
+            self.problem = problem
+
+        def run(self):
+            wrong = Candidate('torque_ripple', 'motor_axis')
+            model = self.problem.empty.joined(wrong, find(wrong.effect).typical)
+            start = self.problem.fitted(self.problem.begun)
+            return Found(states=[start, self.problem.fitted(model, rounds=0)])
+
+    monkeypatch.setattr(session, 'Search', Searching)
+    monkeypatch.setattr(session, 'signless', lambda *_: [SIGN])
+    found = Searching(ready.problem).run()
+    assert beyond_laws(ready.problem, found.start, found.final)
+    session._searched(ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience())
+    assert 'looking again: a sensor may have lost its sign' not in said
