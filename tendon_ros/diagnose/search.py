@@ -96,12 +96,14 @@ class Search:
         state = found.final
         turn = len(found.states) - 1
         challenged: Fit | None = None
+        looked: list[Fit] = []  # states beside which more causes were looked for
         asked_held = False
         while True:
             grown: Fit | None = None
             asks = open_question(self.problem, state)
             asks |= turn == 0 and bool(promising(state, proposals))
             if asks and turn < ROUNDS and not self._ends(state):
+                looked.append(state)
                 self._steps.report(f'looking for causes, round {turn + 1}', 0.05 + 0.1 * turn)
                 if state is not found.start:
                     screen = Screen(self.problem, state, self._seen)
@@ -131,6 +133,8 @@ class Search:
                 break
             gained = found.final.cost < GAINED * state.cost
             if (brief or self._imitates(found)) and not gained:
+                break
+            if _known(looked, found.final):
                 break
             state = challenged = found.final
         self._ordered(found)
@@ -195,3 +199,13 @@ class Search:
             if np.isfinite(fit.cost):
                 states.append(fit)
         found.states = [*states, final] if order else states
+
+
+def _known(looked: Sequence[Fit], state: Fit) -> bool:
+    """
+    Return whether more causes were looked for beside the same ones before, and as good a fit.
+
+    What a round adds and a challenge drops would come and go for as long as there is time.
+    """
+    causes = set(state.model.causes)
+    return any(set(s.model.causes) == causes and not state.cost < GAINED * s.cost for s in looked)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from tendon_ros.diagnose import search as searching
 from tendon_ros.diagnose.asking import asked_again, TRACE
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
@@ -90,3 +91,37 @@ def test_a_late_sensor_is_asked_again_once_others_make_it_jump(measured_on):
     assert asked_again([late, heavy], silent) == (late,)
     heard = [replace(p, own=1.1 * TRACE) for p in silent]
     assert asked_again([late, heavy], heard) == (late, heavy)
+
+
+def test_what_a_challenge_drops_again_and_again_is_looked_for_once(
+    bench, measured_on, monkeypatch
+):
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.1}),
+        ('torque_gain', 'motor_L', {'gain': 1.1}),
+    )
+    problem = prepared([run], bench).problem
+    begun = problem.empty.joined(COULOMB, {'torque': 0.1})
+    said = []
+
+    class Dropping:
+        """Finds each time that the gain is not needed."""
+
+        def __init__(self, *_):
+            pass
+
+        def of(self, found, *, brief):
+            causes = found.final.model.causes
+            if GAIN in causes:
+                kept = found.final.model.without(causes.index(GAIN))
+                found.states[-1] = problem.fitted(kept)
+            found.without = [found.start] * len(found.final.model.causes)
+
+    monkeypatch.setattr(searching, 'Challenge', Dropping)
+    found = Search(
+        problem, [COULOMB, GAIN], 1, lambda what, _done: said.append(what), begun=begun
+    ).run()
+    assert found.final.model.causes == (COULOMB,)
+    assert 'looking for causes, round 2' in said
+    assert 'looking for causes, round 4' not in said
