@@ -139,7 +139,8 @@ class Begun:
         known = self._problem.slopes(state)
 
         def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
-            fit = self._problem.fitted(rest.joined(*begin), known, rounds, accuracy)
+            # when it was is found once it comes near
+            fit = self._problem.fitted(rest.joined(*begin), known, rounds, accuracy, timed=False)
             return Rival(begin[0], fit)
 
         return [r for r in self._steps.pool.map(one, begun) if math.isfinite(r.fit.cost)]

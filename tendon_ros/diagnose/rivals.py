@@ -103,7 +103,7 @@ def relieved(problem: Problem, fit: Fit) -> Fit | None:
     known = problem.slopes(fit)
     # two that share what they do have each taken some of it, and it is not told who had less
     rest = [fit.model.without(k) for k in np.argsort(others)[:SUSPECTS].tolist()]
-    fits = [problem.fitted(model, known, 8, 1e-3) for model in rest]
+    fits = [problem.fitted(model, known, 8, 1e-3, timed=False) for model in rest]
     best = min(fits, key=lambda smaller: smaller.cost, default=None)
     if best is None or not math.isfinite(best.cost):
         return None

@@ -186,9 +186,9 @@ class Steps:
         :param known: derivatives by the unknown's label.
         :return: the fit.
         """
-        fit = self.problem.fitted(model, known, rounds=8, accuracy=1e-3)
+        fit = self.problem.fitted(model, known, rounds=8, accuracy=1e-3, timed=False)
         if known is None and not np.abs(fit.model.moved).max(initial=0.0) > 0.5:
-            return fit
+            return self.problem.timed(fit, rounds=8, accuracy=1e-3)
         return self.problem.fitted(fit.model, rounds=6, accuracy=1e-3)
 
     def pruned(self, start: Fit, state: Fit, stood: Collection[Candidate] = ()) -> Fit:

@@ -63,7 +63,16 @@ class Descent:
         :param x: unknowns.
         :return: with its cost, infinite where the model cannot be computed.
         """
-        left = self._left(x)
+        return self.placed(x, self._left(x))
+
+    def placed(self, x: FloatArray, left: FloatArray) -> Place:
+        """
+        Return a place of which it is known what it leaves.
+
+        :param x: unknowns.
+        :param left: what they leave, shape (samples,).
+        :return: with its cost.
+        """
         return Place(x, left, float(left @ left + self._prior @ (x - self._likely) ** 2))
 
     def step(self, place: Place, slope: FloatArray, tries: int, gain: float) -> Place:

@@ -16,6 +16,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.descent import Descent, follow, Place, TRIES, unpressed
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.slopes import Slopes
@@ -94,6 +95,8 @@ class Problem(Slopes):
         known: Mapping[str, FloatArray] | None = None,
         rounds: int = 12,
         accuracy: float = 1e-3,
+        *,
+        timed: bool = True,
     ) -> Fit:
         """
         Fit all unknowns of a model.
@@ -103,11 +106,24 @@ class Problem(Slopes):
             as :meth:`slopes` gives them; those by tolerances are found once where not known.
         :param rounds: at most so many.
         :param accuracy: relative gain of a round below which the fit ends.
+        :param timed: whether a careful fit looks for when events were as well; a rough one, which
+            is for comparing, does not.
         :return: the fit.
         """
         fit = self._descended(model, known, rounds, accuracy)
-        # a rough fit is for comparing; where events are is found once it matters
-        for _ in range(MOVES if accuracy <= CAREFUL else 0):
+        careful = timed and accuracy <= CAREFUL
+        return self.timed(fit, rounds, accuracy) if careful else fit
+
+    def timed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
+        """
+        Return a fit whose events are where they fit best.
+
+        :param fit: the fit.
+        :param rounds: at most so many once an event has moved.
+        :param accuracy: relative gain of a round below which the fit ends.
+        :return: the fit; the same where they were.
+        """
+        for _ in range(MOVES):
             later = self._retimed(fit)
             if later is None:
                 break
@@ -122,30 +138,27 @@ class Problem(Slopes):
         """
         x = self.pack(fit.model)
         axes = self.axes(fit.model)
-        descent = self._descent(fit.model)
+        left = fit.left
         least = (1.0 - 1e-3) * fit.cost
-        better: FloatArray | None = None
+        descent = self._descent(fit.model)
         at = 0
         for cause in fit.model.causes:
-            names = [p.search for p in cause.parameters]
-            begin = [at + n for n, name in enumerate(names) if name == 'instant']
-            lasts = [at + n for n, name in enumerate(names) if name == 'duration']
-            at += len(names)
-            # the whole event moves; its begin alone; its end alone
-            moves = [[(j, 1.0)] for j in begin]
-            moves += [[(j, 1.0), (k, -1.0)] for j in begin for k in lasts]
-            moves += [[(k, 1.0)] for k in lasts]
-            for move, shift in product(moves, RETIMED):
+            better: Place | None = None
+            segments, there = self.acting(cause)
+            for move, shift in product(_moves(cause, at), RETIMED):
                 trial = x.copy()
                 for j, sign in move:
                     low, high = axes[j].low, axes[j].high
                     moved = axes[j].value(x[j]) + sign * shift
                     trial[j] = axes[j].place(min(max(moved, low), high))
-                cost = descent.at(trial).cost
-                if cost < least:
-                    better, least = trial, cost
-            x = x if better is None else better
-        return None if better is None else self.unpack(fit.model, better)
+                # nothing changes where the event does not happen
+                now = self.left(self.unpack(fit.model, trial), segments)
+                place = descent.placed(trial, np.where(there, now, left))
+                if place.cost < least:
+                    better, least = place, place.cost
+            at += len(cause.parameters)
+            x, left = (x, left) if better is None else (better.x, better.left)
+        return None if left is fit.left else self.unpack(fit.model, x)
 
     def _descended(
         self,
@@ -253,6 +266,23 @@ class Problem(Slopes):
         slope = fit.slope if free is None else fit.slope * free
         normal = slope.T @ slope + np.diag(self.prior(fit.model) + 1e-9)
         return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+
+
+def _moves(cause: Candidate, at: int) -> list[list[tuple[int, float]]]:
+    """
+    Return how an event may move: the whole of it, its begin alone, its end alone.
+
+    Each is a list of unknowns and which way they go; ``at``: the first unknown of the cause.
+    """
+    searched = [p.search for p in cause.parameters]
+    begin = [at + n for n, search in enumerate(searched) if search == 'instant']
+    lasts = [at + n for n, search in enumerate(searched) if search == 'duration']
+    whole = [[(j, 1.0)] for j in begin]
+    return [
+        *whole,
+        *([(j, 1.0), (k, -1.0)] for j in begin for k in lasts),
+        *([(k, 1.0)] for k in lasts),
+    ]
 
 
 def _computed(descent: Descent, x: FloatArray, own: int) -> Place:

@@ -151,14 +151,17 @@ class Residuals:
         """
         return [any(t.is_moved_by(c) for c in model.causes) for t in self.tolerances]
 
-    def left(self, model: Model) -> FloatArray:
+    def left(self, model: Model, among: Sequence[bool] | None = None) -> FloatArray:
         """
         Return what is left of each sample that counts, in noise deviations.
 
         :param model: the model.
-        :return: measured less predicted, shape (samples,).
+        :param among: of each segment whether it is asked for; all where None.
+        :return: measured less predicted, shape (samples,); of what was not asked for, nothing that
+            means anything.
         """
-        predicted = self.rollouts.predicted(self.uses(model), self._asked)
+        asked = self._asked if among is None else np.logical_and(self._asked, among).tolist()
+        predicted = self.rollouts.predicted(self.uses(model), asked)
         left = self.flat([m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)])
         for k, cause in enumerate(model.causes):
             for instant in _instants(cause, model.values(k)):
@@ -175,12 +178,21 @@ class Residuals:
         """
         return self.flat(self.rollouts.predicted(self.uses(model), self._asked))
 
+    def acting(self, cause: Candidate) -> tuple[list[bool], NDArray[np.bool_]]:
+        """
+        Return where a cause acts.
+
+        :param cause: the cause.
+        :return: in which segments; in which samples.
+        """
+        segments = [cause.acts_in(s.name) for s in self._segments]
+        return segments, np.array(segments)[self._segment]
+
     def _near(self, cause: Candidate, instant: float) -> NDArray[np.bool_]:
         """Return the samples so near an event that how it came about matters."""
-        acting = np.array([cause.acts_in(s.name) for s in self._segments])
         near: NDArray[np.bool_] = np.abs(self._time - instant) < SUDDEN
-        there: NDArray[np.bool_] = near & acting[self._segment]
-        return there
+        _, there = self.acting(cause)
+        return near & there
 
     def flat(self, rows: Sequence[FloatArray]) -> FloatArray:
         """
