@@ -118,6 +118,12 @@ class Effect:
         return {p.name: p.typical if p.shapes_only else p.neutral for p in self.parameters}
 
     @cached_property
+    def left_out(self) -> Mapping[str, float]:
+        """Parameters where a file gives none: neutral ones, and angles of zero."""
+        angles = {p.name: 0.0 for p in self.parameters if p.search in ('phase', 'rest')}
+        return {**self.neutral, **angles}
+
+    @cached_property
     def typical(self) -> Mapping[str, float]:
         """Parameters of a size that is worth looking for."""
         return {p.name: p.typical for p in self.parameters}

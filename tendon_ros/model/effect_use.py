@@ -39,7 +39,7 @@ def checked_use(
     :param instrument: where it is to act.
     :param effect: the effect's id.
     :param place: a place of the instrument, such as ``pulley_3``.
-    :param parameters: texts with units, or SI numbers; what is left out has no influence.
+    :param parameters: texts with units, or SI numbers; sizes that are left out are none, angles are zero.
     :return: the effect in use.
     :raises EffectError: on an unknown effect, place or parameter, a place of the wrong kind, a
         wrong unit or a value out of bounds; the message lists what exists.
@@ -57,7 +57,7 @@ def checked_use(
                 f'{effect} cannot act at {place}, which measures {sensor.kind}; it acts at '
                 f'sensors of {listed(known.sensors)}'
             )
-    values = dict(known.neutral)
+    values = dict(known.left_out)
     units = units_at(instrument, effect, place)
     for name in parameters:
         if name not in values:

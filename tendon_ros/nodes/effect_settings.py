@@ -32,7 +32,7 @@ def effect_settings(instrument: Instrument) -> tuple[Setting, ...]:
     out = []
     for place, effect in _slots(instrument):
         units = units_at(instrument, effect.id, place)
-        given = {**effect.neutral, **in_file.get((place, effect.id), {})}
+        given = {**effect.left_out, **in_file.get((place, effect.id), {})}
         for parameter in effect.parameters:
             out.append(
                 Setting(

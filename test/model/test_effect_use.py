@@ -3,7 +3,7 @@
 import pytest
 
 from tendon_ros.base.errors import InstrumentError
-from tendon_ros.model.effect_use import in_force, units_at
+from tendon_ros.model.effect_use import checked_use, in_force, units_at
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
@@ -66,3 +66,9 @@ effects:
     path.write_text(text.replace('5 mN*m +- 1 mN*m', '5 N'))
     with pytest.raises(InstrumentError, match=r'load_cell_bias at shaft_jaw: force: .*N\*m'):
         load_instrument(path)
+
+
+def test_a_weight_hangs_straight_down_at_zero_where_nothing_is_said():
+    body = load_instrument('single_body')
+    use = checked_use(body, 'gravity', 'pulley_body', {'torque': '1 N*m'})
+    assert use.parameters == {'torque': 1.0, 'phase': 0.0}
