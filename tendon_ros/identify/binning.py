@@ -34,7 +34,7 @@ FEW = 10  # bins of a recording that say nothing of their length
 #: part of an acceleration's power that may be there where counts seem to make up all of it
 SOME = 0.25
 #: [s] that bins are lengthened to at most, and times as long as before with each step
-LONGEST, LONGER = 0.04, 1.25
+LONGEST, LONGER = 0.1, 1.25
 
 
 def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float:
@@ -69,8 +69,8 @@ def bin_length(recordings: Sequence[Recording], instrument: Instrument) -> float
     # what counts make up falls with the fourth power, what bins do not see grows with the second
     while (longer := math.ceil(LONGER * samples)) * sampling <= LONGEST:
         blurred = max((m.blurred(sampling * samples) for m in motions), default=0.0)
-        missed = max((m.missed(sampling * longer) for m in motions), default=0.0)
-        if blurred <= max(WRONG, missed):
+        unseen = max((m.unseen(sampling * longer) for m in motions), default=0.0)
+        if blurred <= max(WRONG, unseen):
             break
         samples = longer
     return sampling * samples
@@ -123,11 +123,10 @@ class Driven:
 
     def missed(self, period: float) -> float:
         """
-        Return the part of the torque that the inertia makes of what bins do not see.
+        Return the part of the torque that shorter bins would see, and these do not.
 
         :param period: length of a bin [s].
-        :return: root mean square by root mean square, what counts make up taken off; 0 where the
-            encoder knows no better.
+        :return: as :meth:`unseen`; 0 where a single reading of the encoder knows no better.
         """
         if self._too_short(period):
             return 0.0
@@ -135,6 +134,17 @@ class Driven:
         coarse = CubicSpline(middles, self.angle(middles))
         inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
         if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= self.error:
+            return 0.0
+        return self.unseen(period)
+
+    def unseen(self, period: float) -> float:
+        """
+        Return the part of the torque that the inertia makes of what bins do not see.
+
+        :param period: length of a bin [s].
+        :return: root mean square by root mean square, what counts make up taken off.
+        """
+        if self._too_short(period):
             return 0.0
         _, off = self._seen(period, self.angle)
         _, made_up = self._seen(period, self._counted)

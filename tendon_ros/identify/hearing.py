@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 NEAR = 0.04  # [s] within which noise is a difference and motion is not
-#: bins, and [s] at most, beyond which accelerations that counts have made up share nothing
+#: bins, and [s] at most, beyond which accelerations that counts have made up share nothing; where
+#: bins are so long that motion may differ by then, what is quieter is noise
 COUNTED, LATER = 3, 0.06
 PERIODS = 6  # times as far apart as neighbours that periods of what shakes are looked for
 #: part of the power that neighbours do not share from which on less of it a little later is a
@@ -82,7 +83,7 @@ def _quietest(power: Callable[[int], float], apart: int, count: int) -> float:
 
     Of those a period apart where what is left shakes, of the nearest where it swings more slowly.
     """
-    usual = power(apart)
+    usual = min(power(lag) for lag in range(apart, max(apart, COUNTED) + 1))
     # a few samples far apart differ by chance as much or as little as they like
     farthest = min(PERIODS * apart, int(FEW * count))
     later = min((power(lag) for lag in range(apart + 1, farthest + 1)), default=math.inf)

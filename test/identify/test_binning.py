@@ -61,6 +61,23 @@ def test_coarse_counts_have_longer_bins_and_leave_inertia_as_it_is(rig):
     assert bin_length([loaded], body) == pytest.approx(0.008)
 
 
+@pytest.mark.parametrize(('frequency', 'low', 'high'), [(1.0, 0.08, 0.1), (2.0, 0.04, 0.06)])
+def test_the_coarser_counts_are_the_longer_are_bins_of_slow_motion(rig, frequency, low, high):
+    count = 3e-3
+    coarse = tuple(replace(s, resolution=count * (s.kind == 'angle')) for s in rig.sensors)
+    body = replace(rig, sensors=coarse, tolerances={'pulley_body.inertia': math.inf})
+    run = swinging(frequency, 20.0, count)
+    assert low < bin_length([run], body) <= high
+    problem = prepared([run], body).problem
+    fit = problem.fitted(problem.empty)
+    [inertia] = [
+        t.use(z).parameters[t.parameter]
+        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
+        if t.quantity == 'inertia'
+    ]
+    assert inertia == pytest.approx(1.0, abs=0.06)
+
+
 @pytest.mark.parametrize('seconds', [3.0, 5.0])
 def test_the_slowest_motion_does_not_decide(rig, seconds):
     both = [swinging(1.0), swinging(10.0, seconds)]
