@@ -192,14 +192,22 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     ]
     form = own_power(problem, found.start) + sum(wrong)
     grown = min(gains(problem, without, final)[0], BOUNDLESS)
+    # numbers that have to be off without it speak for it, too, where it shows
+    showing = sum(gained[c] * np.count_nonzero(own) for c, own in channels.items()) / every
+    strain = (_strain(without) - _strain(final)) / max(showing, 1.0)
     return Signs(
-        worth=max(there(gain), 1e-9),
+        worth=max(there(gain) + strain, 1e-9),
         left=there(left.by_channel) + ELSEWHERE * left.whole,
         form=form,
         event=event,
         beside=sum(kept),
         part=grown / max(grown + left.whole, 1e-9),
     )
+
+
+def _strain(fit: Fit) -> float:
+    """Return what it costs a fit that numbers of the file are not where they are likely to be."""
+    return fit.cost - float(fit.left @ fit.left)
 
 
 #: probability that a cause has at most which spoils what no fit saw, which others undo, which only
@@ -214,6 +222,7 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     Return whether what a fit does without makes worse what no fit has seen, by more than chance.
 
     A weak cause that is there may lose there what it gains: seconds differ by more than it does.
+    One without which numbers of the file have to be off may lose what that costs.
 
     :param ready: the problem.
     :param found: what the search has found.
@@ -221,12 +230,14 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     :return: whether it loses more than seconds of no meaning would on average, and more than
         nothing beside what it gains where it was fitted.
     """
-    gain = saved(ready.held, without.model, found.final.model)
+    final = found.final
+    gain = saved(ready.held, without.model, final.model)
+    samples = sum(int(mask.sum()) for mask in ready.held.masks) / max(len(final.left), 1)
     # what was held out may be a hold, of which a damping says next to nothing
-    gained = (without.cost - found.final.cost) / max(len(found.final.left), 1)
-    nothing = NOTHING * max(0.0, gained) * sum(int(mask.sum()) for mask in ready.held.masks)
+    nothing = NOTHING * max(0.0, without.cost - final.cost) * samples
+    strain = max(0.0, _strain(without) - _strain(final)) * samples
     # what cannot be computed there is no help either
-    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing
+    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing - strain
 
 
 #: noise power per sample up to which what is left without a cause may be noise

@@ -12,6 +12,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import (
     chance,
     IDLE,
+    NOTHING,
     probability,
     Signs,
     signs_beside,
@@ -83,6 +84,23 @@ def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch,
     found = found_with(ready.problem, FRICTION)
     # beside a cause that gains nothing where it was fitted
     assert spoils(ready, found, found.final) is spoilt
+
+
+def test_numbers_that_have_to_be_off_without_a_cause_speak_for_it(ready, monkeypatch):
+    found = found_with(ready.problem, FRICTION)
+    [without] = found.without
+    left = stays(ready, found.final)
+    samples = len(without.left)
+    strained = replace(without, cost=without.cost + 0.2 * samples)
+    plain, more = (signs_beside(ready.problem, found, w, left) for w in (without, strained))
+    # it shows in some channels, and there the more
+    assert more.worth > plain.worth + 0.2
+    # and may lose so much of what was held out
+    held = sum(int(mask.sum()) for mask in ready.held.masks)
+    gained = NOTHING * (without.cost - found.final.cost) / samples
+    monkeypatch.setattr(judge, 'saved', lambda *_: np.full(8, -(gained + 0.1) * held / 4.0))
+    assert spoils(ready, found, without)
+    assert not spoils(ready, found, strained)
 
 
 @pytest.mark.parametrize(('beside', 'believed'), [(0.2, True), (0.4, False)])
