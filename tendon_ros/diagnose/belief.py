@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, spent
+from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, is_polled, spent
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
@@ -55,7 +55,8 @@ class Belief:
     are named, with what speaks for them; ``companies``: causes that make up for one another, of
     which the first is named for all. ``accepted``: these and who is named through them.
     ``kept``: the accepted ones, and what spoils nothing beside them. ``early``: who is early where
-    all other sensors are late; those delays are not believed.
+    all other sensors are late; those delays are not believed. ``polled``: delays that are believed
+    and not named, since they may be the logger's.
     """
 
     weighed: tuple[Weighed, ...]
@@ -64,6 +65,7 @@ class Belief:
     accepted: tuple[int, ...]
     kept: tuple[int, ...]
     early: Early | None
+    polled: tuple[int, ...]
 
     def model(self, found: Found, which: Collection[int]) -> Model:
         """
@@ -112,7 +114,12 @@ def belief(ready: Prepared, found: Found) -> Belief:
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
-    accepted = members | {*alone}
+    polled = {
+        k
+        for k, cause in enumerate(causes)
+        if k not in undone and is_polled(problem, cause, final.model.values(k))
+    }
+    accepted = members | {*alone} | polled
     # fits want them, and what was held out is often a few seconds only: it must speak plainly
     beside = {
         k
@@ -130,6 +137,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         tuple(sorted(accepted)),
         tuple(sorted(accepted | beside)),
         ahead,
+        tuple(sorted(polled)),
     )
 
 
@@ -191,7 +199,8 @@ def _weighed(ready: Prepared, found: Found, k: int, left: Stays, undone: bool) -
     # beside a strong effect many differ by less than its law may be wrong by
     as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
     vague = len({cause.effect} | as_good) > ALIKE or _open(ready.problem, found, k)
-    vague |= is_constant(ready.problem, cause, found.final.model.values(k))
+    values = found.final.model.values(k)
+    vague |= is_constant(ready.problem, cause, values) or is_polled(ready.problem, cause, values)
     return Weighed(
         cause=cause,
         equal=equal,

@@ -55,7 +55,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param candidate: the effect.
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
-        a delay that a controller's hold or a logger makes, a ripple of which not half a wave was
+        a delay that a controller's hold makes, a ripple of which not half a wave was
         seen, friction that never yields, a limit without an end where the torque is known, a
         number of the file within its tolerance.
     """
@@ -65,8 +65,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
             return t.axis.low < value < t.axis.high
     # a controller holds its torque for a period, on average half of one too long
     held = HOLDS * problem.rollouts.instrument.control_period
-    polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
-    if candidate.effect == 'sensor_delay' and values['time'] < max(held, polled):
+    if candidate.effect == 'sensor_delay' and values['time'] < held:
         return True
     # how much a motor gives of what it reports is known, or is another guess
     if _is_wide(candidate, values) and not guesses_torque(
@@ -92,6 +91,19 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         if travel is not None and values['angle'] > YIELDS * travel:
             return True
     return (simpler(candidate, values) or biased(problem, candidate, values)) is not None
+
+
+def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a delay may be that of a logger, which is no fault of the sensor.
+
+    :param problem: the data.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether it is one, and below half of the time between samples.
+    """
+    polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
+    return candidate.effect == 'sensor_delay' and values['time'] < polled
 
 
 def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:

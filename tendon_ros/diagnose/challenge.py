@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import math
 
 from tendon_ros.diagnose.begun import Begun
-from tendon_ros.diagnose.bent import degenerate, excused
+from tendon_ros.diagnose.bent import degenerate, excused, is_polled
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.one_body import divide, merge
@@ -175,7 +175,10 @@ class Challenge:
     def _more_than_a_part(self, rival: Rival, state: Fit) -> bool:
         """Return whether a rival does anything that a simpler effect, or an excuse, does not."""
         model = rival.fit.model
-        bent = degenerate(self._problem, rival.candidate, model.values(-1))
+        values = model.values(-1)
+        bent = degenerate(self._problem, rival.candidate, values)
+        # what is no fault of the rig takes no cause's place
+        bent |= is_polled(self._problem, rival.candidate, values)
         return (
             not bent and self._no_excuse(model, state) and plain(self._problem, model, -1) is None
         )

@@ -17,7 +17,7 @@ from tendon_ros.diagnose.alike import leaning
 from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
-from tendon_ros.diagnose.clock import early_words
+from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
@@ -120,7 +120,7 @@ def diagnose(
     beyond = left_over(stays(ready, believed).whole, form)
     places = whereabouts(ready, found, held.accepted, believed, left)
     # where there is no gap, there is nothing that anything could stand in for
-    kept = held.kept if held.named or beyond >= NAMED else ()
+    kept = held.kept if held.named or beyond >= NAMED else held.polled
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
@@ -164,6 +164,7 @@ def diagnose(
             *said_of_torque(instrument),
             *held_on,
             *([early_words(held.early)] if held.early else []),
+            *([polled_words(found.final.model, held.polled)] if held.polled else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *([ASTRAY] if astray else []),
             *gather.absurd_words(moved),

@@ -39,7 +39,8 @@ def checked_use(
     :param instrument: where it is to act.
     :param effect: the effect's id.
     :param place: a place of the instrument, such as ``pulley_3``.
-    :param parameters: texts with units, or SI numbers; sizes that are left out are none, angles are zero.
+    :param parameters: texts with units, or SI numbers; sizes that are left out are none, and
+        angles are zero.
     :return: the effect in use.
     :raises EffectError: on an unknown effect, place or parameter, a place of the wrong kind, a
         wrong unit or a value out of bounds; the message lists what exists.

@@ -1,11 +1,17 @@
 """Delays: what all sensors share is the clock's, and who alone has none is early."""
 
+from dataclasses import replace
+
 import pytest
 
+from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.clock import early, early_words, told_apart
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
+
+TORQUE = 'actuator/pulley_body/effort'
 
 
 def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
@@ -60,3 +66,30 @@ def test_others_that_are_late_are_late(problem, changed):
     late = {k: v for k, v in (late | changed).items() if v is not None}
     assert early(problem, delayed(problem, **late)) is None
     assert early(problem, delayed(problem)) is None
+
+
+def test_what_a_logger_makes_late_is_used_and_not_named(measured_on):
+    light = load_instrument('single_body')
+    body = replace(light, pulleys=(replace(light.pulleys[0], inertia=0.05),))
+    run = measured_on(
+        body,
+        ('coulomb_friction', 'pulley_body', {'torque': 0.3}),
+        settings=(('duration', '12 s'), ('amplitude', '30 deg')),
+    )
+    # read a hundred times a second, the torque 4 ms after the angle
+    polled = []
+    for channel in run.channels.values():
+        every = max(1, round(0.01 / channel.sampling))
+        after = round(0.004 / channel.sampling) if channel.name == TORQUE else 0
+        at = slice(4 * every, None, every)
+        earlier = slice(4 * every - after, None, every)
+        count = min(len(channel.time[at]), len(channel.value[earlier]))
+        polled.append(
+            Channel(channel.name, channel.time[at][:count], channel.value[earlier][:count])
+        )
+    late = replace(run, channels={c.name: c for c in polled})
+    diagnosis = diagnose([late], body, plan=False).diagnosis
+    assert [(c.effect, c.place) for c in diagnosis.causes] == [('coulomb_friction', 'pulley_body')]
+    assert ('sensor_delay', 'torque_body') in [(c.effect, c.place) for c in diagnosis.beside]
+    assert any('late by less than half' in note for note in diagnosis.left_out)
+    assert diagnosis.verdict == 'explained'

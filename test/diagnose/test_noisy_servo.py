@@ -7,7 +7,7 @@ import pytest
 from tendon_ros.bags.importing import import_runs
 from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.base.resources import config_path
-from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.bent import degenerate, is_polled
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
@@ -40,4 +40,5 @@ def test_friction_is_found_where_no_structure_is_to_be_seen(polled, arm):
 def test_registers_are_read_one_after_the_other(polled, arm, late, loggers):
     problem = prepared([polled], arm).problem
     delay = Candidate('sensor_delay', 'encoder_arm'), {'time': late}
-    assert degenerate(problem, *delay) is loggers
+    assert not degenerate(problem, *delay)
+    assert is_polled(problem, *delay) is loggers
