@@ -83,7 +83,7 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         if lost.any():
             warnings.append(
                 f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out (not '
-                f'a finite number), first row {int(np.flatnonzero(lost)[0])}'
+                f'a finite number), first row {1 + int(np.flatnonzero(lost)[0])} of the data'
             )
         channels[name] = Channel(name, time[keep], value[keep])
     if not any(name.startswith('actuator/') for name in channels):
@@ -129,10 +129,10 @@ def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArr
     time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
     usable[usable] = _increasing(time[usable])
     if not usable.all():
-        first = int(np.flatnonzero(~usable)[0])
+        first = 1 + int(np.flatnonzero(~usable)[0])
         warnings.append(
             f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not between '
-            f'those of the rows beside, or not a number), first row {first}'
+            f'those of the rows beside, or not a number), first row {first} of the data'
         )
     _warn_of_jitter(place, time[usable], warnings)
     return time, usable

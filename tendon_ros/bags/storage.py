@@ -38,7 +38,7 @@ def storage_files(path: Path) -> list[Path]:
     if not files and not (path / 'metadata.yaml').is_file():
         raise RecordingError(
             f'{path}: not a bag; give a folder with metadata.yaml, or a file that ends in '
-            f'{" or ".join(SUFFIXES)}'
+            f'{" or ".join(SUFFIXES)}; `tendon import` makes bags of other files, such as CSV'
         )
     return files
 

@@ -33,14 +33,20 @@ def run(args: argparse.Namespace) -> None:
     """
     from tendon_ros.model.instrument_file import find_instrument, load_instrument
     from tendon_ros.model.modes import modes
+    from tendon_ros.report.diagnosis_words import count
 
     path = find_instrument(args.instrument)
     one = load_instrument(path)
     print(f'{path}: {one.name} is sound' + (f' ({one.description})' if one.description else ''))
-    print(
-        f'{len(one.pulleys)} pulleys, {len(one.motors)} motors, {len(one.loops)} loops, '
-        f'{len(one.couplings)} couplings, {len(one.contacts)} contacts, {len(one.sensors)} sensors'
-    )
+    parts = {
+        'pulley': one.pulleys,
+        'motor': one.motors,
+        'loop': one.loops,
+        'coupling': one.couplings,
+        'contact': one.contacts,
+        'sensor': one.sensors,
+    }
+    print(', '.join(count(len(some), thing) for thing, some in parts.items()))
     if one.loops or one.couplings:
         _print_routing(one)
     print('\nplaces of effects')

@@ -187,6 +187,12 @@ def _no_gap(diagnosis: Diagnosis) -> str:
             f'deviations, and by {number(after)} once what is guessed, or within its tolerance, '
             'is fitted.'
         )
+    if before > _MUCH:
+        return (
+            f'No gap that has a form: {name} is off by {off} noise deviations, {number(after)} '
+            'once numbers are fitted within their tolerances, but of what is left, samples beside '
+            'each other share no more than laws of the file may be wrong by.'
+        )
     if len(diagnosis.gap) == 1:
         return f'No gap: {name} is off by {off} noise deviations.'
     return (

@@ -202,10 +202,10 @@ def test_bad_time_and_nan_are_left_out_and_told(tmp_path):
     assert run['actuator/motor/position'].value.size == N - 4
     time, jitter, value = run.warnings
     assert '3 of 40 rows left out' in time
-    assert 'first row 5' in time
+    assert 'first row 6 of the data' in time
     assert '4 of 36 intervals' in jitter
     assert 'actuator/motor/position' in value
-    assert 'first row 20' in value
+    assert 'first row 21 of the data' in value
 
 
 def test_one_wild_stamp_costs_one_row(tmp_path):
@@ -215,7 +215,7 @@ def test_one_wild_stamp_costs_one_row(tmp_path):
     (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
     assert np.array_equal(run['load_cell/force'].time, np.delete(np.round(TIME, 9), 10))
     assert '1 of 40 rows left out' in run.warnings[0]
-    assert 'first row 10' in run.warnings[0]
+    assert 'first row 11 of the data' in run.warnings[0]
 
 
 def test_stamps_that_no_clock_gives_name_the_unit(tmp_path):

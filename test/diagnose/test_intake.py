@@ -12,6 +12,7 @@ from tendon_ros.bags.reader import read_recording
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.resources import config_path
 from tendon_ros.diagnose.intake import admitted
+from tendon_ros.identify.driving import as_recorded
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -170,6 +171,16 @@ def test_nothing_to_compare(bench, sound):
     ]
     with pytest.raises(RecordingError, match=r'nothing to compare: .*actuator/pulley_L/effort'):
         admitted(bare, bench)
+
+
+def test_a_torque_alone_asks_for_a_position(measured_on):
+    body = load_instrument('single_body')
+    run = measured_on(body)
+    torque = 'actuator/pulley_body/effort'
+    alone = replace(run, channels={torque: run[torque]})
+    words = r'beside actuator/pulley_body/effort, .* one of actuator/pulley_body/position$'
+    with pytest.raises(RecordingError, match=words):
+        admitted([alone], as_recorded(body, {torque}))
 
 
 def test_unknown_joints_are_left_out(bench, sound):

@@ -57,6 +57,15 @@ def test_a_gap_that_guessed_numbers_close_is_said_with_both(case):
     assert 'is off by 14 noise deviations, and by 1' in text.replace('\u00a0', ' ')
 
 
+def test_a_gap_without_a_form_does_not_contradict_itself(case):
+    diagnosis, _ = case('no_gap')
+    floor = diagnosis.gap[0].noise_floor
+    loud = diagnosis.gap[0].model_copy(update={'before': 2.4 * floor, 'after': 2.1 * floor})
+    text = headline(diagnosis.model_copy(update={'gap': (loud, *diagnosis.gap[1:])}))
+    assert text.startswith('No gap that has a form')
+    assert 'off by 2.4 noise deviations, 2.1 once' in text.replace('\u00a0', ' ')
+
+
 def test_doubtful_cause_does_not_explain(case):
     unexplained, _ = case('unexplained')
     doubtful = case('one_cause')[0].causes[0].model_copy(update={'probability': 0.3})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tendon_ros.base.errors import listed
-from tendon_ros.base.recording import Recording
+from tendon_ros.base.recording import channel_name, Recording
 from tendon_ros.diagnose.intake.step import compared, Sifted, without
 from tendon_ros.identify.driving import motor_channels
 from tendon_ros.model.instrument import Instrument
@@ -84,9 +84,13 @@ def _misfit(cleaned: Recording, recording: Recording, instrument: Instrument) ->
             'record it'
         )
     if not compared(cleaned, instrument):
+        positions = {
+            channel_name('actuator', f'pulley_{p}', 'position') for p in instrument.driven
+        }
+        others = {s.channel for s in instrument.sensors} | positions
         return (
             f'{recording.name}: nothing to compare: no usable channel of a sensor of '
-            f'{instrument.name} beside the motor positions; record one of '
-            f'{listed({s.channel for s in instrument.sensors} - set(needed))}'
+            f'{instrument.name} beside {listed(needed)}, which drives the model; record one of '
+            f'{listed(others - set(needed))}'
         )
     return ''
