@@ -213,7 +213,7 @@ def nominal_rig(bench: str) -> Rig:
     motors[:, [k.GAIN, k.SCALE, k.DROP_LENGTH, k.RESOLUTION]] = 1.0
     motors[:, k.SATURATION] = NO_LIMIT
     for motor in one.motors:
-        row, gains = motors[MOTORS.index(motor.name)], motor.controller
+        row, gains = motors[MOTORS.index(motor.name)], motor.controller or Controller()
         row[[k.KP, k.KI, k.KD, k.LIMIT]] = gains.kp, gains.ki, gains.kd, gains.limit
         row[k.RESOLUTION] = resolution(one, f'encoder_{motor.name}')
     contact = np.zeros(k.CONTACT_NUMBERS)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import TendonError
+from tendon_ros.base.errors import listed, TendonError
 from tendon_ros.base.recording import channel_name, Recording
 from tendon_ros.diagnose.evidence import Trace
 from tendon_ros.diagnose.intervals import mean_square_interval
@@ -28,10 +28,15 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ClosedLoop:
-    """The gap in closed loop, and what it was computed from; empty without recorded commands."""
+    """
+    The gap in closed loop, and what it was computed from; empty without recorded commands.
+
+    ``left_out``: why there is none of what was recorded.
+    """
 
     gaps: tuple[ChannelGap, ...] = ()
     traces: tuple[Trace, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def closed_loop_gap(
@@ -49,6 +54,11 @@ def closed_loop_gap(
     :param segments: which contacts were there, and the noise.
     :return: gaps by channel, most first, and the traces.
     """
+    loose = [m.name for m in before.motors if m.controller is None]
+    if loose:
+        commanded = any(name.startswith('setpoint/') for r in recordings for name in r.channels)
+        said = f'no closed loop: {before.name} has no controller of {listed(loose)}'
+        return ClosedLoop(left_out=(said,) if commanded else ())
     traces: list[Trace] = []
     floors: dict[str, list[FloatArray]] = {}
     for recording, segment, patched in zip(recordings, segments, after, strict=True):

@@ -167,6 +167,7 @@ def diagnose(
             *([polled_words(found.final.model, held.polled)] if held.polled else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *([ASTRAY] if astray else []),
+            *loops.left_out,
             *gather.absurd_words(moved),
             *patience.words(found.unmet),
         ),

@@ -107,7 +107,7 @@ def _noisy(instrument: Instrument, sensor: Sensor) -> Sensor:
         return replace(sensor, resolution=2.0 * math.pi / COUNTS)
     if sensor.kind == 'velocity':
         return replace(sensor, noise=2.0 * math.pi / COUNTS * RATE / 10.0)
-    limits = [min(m.torque_limit, m.controller.limit) for m in instrument.motors]
+    limits = [m.largest for m in instrument.motors]
     largest = max((limit for limit in limits if math.isfinite(limit)), default=1.0)
     if sensor.kind == 'contact_force':
         [arm] = [c.arm for c in instrument.contacts if c.name == sensor.of]

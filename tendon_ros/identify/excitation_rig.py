@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import replace
+import math
 
 import numpy as np
 
 from tendon_ros.base.errors import SimulationError, TrajectoryError
 from tendon_ros.identify.excitation_channel import RATE
 from tendon_ros.identify.excitation_motion import Motion
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument import Controller, Instrument
+from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
 from tendon_ros.model.simulation import Simulation
 from tendon_ros.model.trajectory import check_limits, Trajectory
 
 ACCURACY = 1e-6  # [rad] a step
 SAFE = 0.8  # part of a torque limit that an experiment may ask for
+#: [rad/s] and damping ratio with which a motor is taken to follow whose controller is not known
+USUAL, DAMPED = 2.0 * math.pi * 5.0, 0.7
 WORKING = 0.75  # part of the tension to which a cable was tested that it may bear
 
 
 def performed(instrument: Instrument, trajectory: Trajectory) -> tuple[Rows, float]:
     """
-    Return what a noiseless rig does under its own controllers.
+    Return what a noiseless rig does under its own controllers, or usual ones.
 
     :param instrument: the rig.
     :param trajectory: its set-points.
@@ -29,10 +33,26 @@ def performed(instrument: Instrument, trajectory: Trajectory) -> tuple[Rows, flo
     :raises SimulationError: where it diverges.
     """
     every = max(1, round(1.0 / (RATE * instrument.control_period)))
-    simulation = Simulation(instrument, tolerance=ACCURACY)
+    simulation = Simulation(controlled(instrument), tolerance=ACCURACY)
     wished = trajectory.sample(instrument.control_period)
     run = simulation.follow if instrument.continuous_control else simulation.run
     return run(wished, every), every * instrument.control_period
+
+
+def controlled(instrument: Instrument) -> Instrument:
+    """
+    Return an instrument of which all motors follow a command.
+
+    :param instrument: the network.
+    :return: the same, with a usual controller where the file has none.
+    """
+    inertia = Numbers(instrument)['inertia']
+    motors = []
+    for motor in instrument.motors:
+        stiff = float(inertia[instrument.index(motor.pulley)]) * USUAL**2
+        usual = Controller(kp=stiff, kd=2.0 * DAMPED * stiff / USUAL)
+        motors.append(replace(motor, controller=motor.controller or usual))
+    return replace(instrument, motors=tuple(motors))
 
 
 def fitting(instrument: Instrument, motion: Motion) -> Motion | None:
@@ -46,7 +66,7 @@ def fitting(instrument: Instrument, motion: Motion) -> Motion | None:
     curves = {c.name: c for c in instrument.curves}
     bearable = [WORKING * curves[loop.curve].tension[-1] for loop in instrument.loops]
     bearable += [np.inf] * len(instrument.couplings)
-    torque = [SAFE * min(m.torque_limit, m.controller.limit) for m in instrument.motors]
+    torque = [SAFE * m.largest for m in instrument.motors]
     base = touching(instrument, motion)
     for _ in range(5):
         trajectory = motion.trajectory(instrument.motor_names)

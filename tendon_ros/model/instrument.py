@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+import math
 from typing import Literal
 
 import numpy as np
@@ -87,10 +88,10 @@ class Controller:
     the speed loop within a position loop does.
     """
 
-    kp: float
-    ki: float
-    kd: float
-    limit: float
+    kp: float = 0.0
+    ki: float = 0.0
+    kd: float = 0.0
+    limit: float = math.inf
     derivative: Literal['error', 'reading'] = 'error'
 
 
@@ -101,17 +102,24 @@ class Motor:
 
     ``gear_ratio``: turns of the rotor for one of the pulley; ``rotor_inertia`` [kg m^2] before the
     gear. At the pulley: ``torque_limit`` [N m]; ``speed_limit`` [rad/s] and ``position_limit``
-    [rad], lower and upper, of what may be commanded.
+    [rad], lower and upper, of what may be commanded. Whose ``controller`` is not known is driven
+    along what was recorded, and follows no command.
     """
 
     name: str
     pulley: str
-    controller: Controller
+    controller: Controller | None = None
     gear_ratio: float = 1.0
     rotor_inertia: float = 0.0
     torque_limit: float = float('inf')
     speed_limit: float = float('inf')
     position_limit: tuple[float, float] = (float('-inf'), float('inf'))
+
+    @property
+    def largest(self) -> float:
+        """The largest torque that it gives [N m]."""
+        asked = self.controller.limit if self.controller else math.inf
+        return min(self.torque_limit, asked)
 
 
 @dataclass(frozen=True)

@@ -127,7 +127,7 @@ def _motor(name: str, section: MotorSection) -> Motor:
     return Motor(
         name=name,
         pulley=section.pulley or name,
-        controller=Controller(**section.controller.model_dump()),
+        controller=Controller(**section.controller.model_dump()) if section.controller else None,
         gear_ratio=section.gear_ratio,
         rotor_inertia=section.rotor_inertia,
         torque_limit=section.torque_limit,

@@ -176,7 +176,7 @@ class MotorSection(Section):
     """A motor on a pulley."""
 
     pulley: Name = ''
-    controller: ControllerSection
+    controller: ControllerSection | None = None
     gear_ratio: Annotated[float, quantity('1', 'positive')] = 1.0
     rotor_inertia: Annotated[float, quantity('kg*m^2', 'not negative')] = 0.0
     torque_limit: Annotated[float, quantity('N*m', 'positive')] = float('inf')

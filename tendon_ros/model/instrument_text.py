@@ -12,6 +12,7 @@ from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import (
     Contact,
     contact_place,
+    Controller,
     Coupling,
     Curve,
     EffectUse,
@@ -155,17 +156,20 @@ def _loop(loop: Loop, known: _Known) -> Document:
     return document
 
 
+def _controller(gains: Controller) -> Document:
+    return {
+        'kp': written(gains.kp, 'N*m/rad'),
+        'ki': written(gains.ki, 'N*m/(rad*s)'),
+        'kd': written(gains.kd, 'N*m*s/rad'),
+        'limit': written(gains.limit, 'N*m'),
+        **({} if gains.derivative == 'error' else {'derivative': gains.derivative}),
+    }
+
+
 def _motor(motor: Motor, sensors: dict[str, Sensor], known: _Known) -> Document:
-    gains = motor.controller
     document: Document = {
         'pulley': motor.pulley,
-        'controller': {
-            'kp': written(gains.kp, 'N*m/rad'),
-            'ki': written(gains.ki, 'N*m/(rad*s)'),
-            'kd': written(gains.kd, 'N*m*s/rad'),
-            'limit': written(gains.limit, 'N*m'),
-            **({} if gains.derivative == 'error' else {'derivative': gains.derivative}),
-        },
+        'controller': _controller(motor.controller) if motor.controller else {},
         **({} if motor.gear_ratio == 1.0 else {'gear_ratio': motor.gear_ratio}),
         **_unless(0.0, rotor_inertia=(motor.rotor_inertia, 'kg*m^2')),
         **_unless(

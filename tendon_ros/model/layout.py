@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from tendon_ros.base.effect import HOOKS
 from tendon_ros.base.errors import EffectError
 from tendon_ros.model.cable import elongation_at, hardened, uniform_cubic
-from tendon_ros.model.instrument import Curve, EffectUse, Instrument
+from tendon_ros.model.instrument import Controller, Curve, EffectUse, Instrument
 from tendon_ros.model.laws import Laws
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.sensed import sensed
@@ -158,9 +158,10 @@ class Layout:
     def _write_control(self, tolerance: float) -> None:
         one, at, m, d = self.instrument, self.structure, self._m, self._d
         for j, motor in enumerate(one.motors):
+            gains = motor.controller or Controller()
             for name in ('kp', 'ki', 'kd', 'limit'):
-                m[at[name.upper()] + j] = getattr(motor.controller, name)
-            m[at['AHEAD'] + j] = float(motor.controller.derivative == 'error')
+                m[at[name.upper()] + j] = getattr(gains, name)
+            m[at['AHEAD'] + j] = float(gains.derivative == 'error')
             encoders = [
                 q for q, s in enumerate(one.sensors) if s.kind == 'angle' and s.of == motor.pulley
             ]

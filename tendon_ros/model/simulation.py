@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import SimulationError, TrajectoryError
+from tendon_ros.base.errors import InstrumentError, listed, SimulationError, TrajectoryError
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.layout import Arrays, arrays_of, Layout
 from tendon_ros.model.rows import joined, Rows
@@ -47,6 +47,13 @@ class Simulation:
         tolerance: float = TOLERANCE,
         pose: Mapping[str, float] | None = None,
     ) -> None:
+        loose = [motor.name for motor in instrument.motors if motor.controller is None]
+        if loose:
+            raise InstrumentError(
+                f'{instrument.name}: nothing makes {listed(loose)} follow a command: give '
+                f'motors.{loose[0]}.controller, such as {{kp: 10 N*m/rad, limit: 2 N*m}}; without '
+                'one, recordings can be diagnosed, and their force estimated'
+            )
         self._instrument = instrument
         self._seed = seed
         self._tolerance = tolerance

@@ -118,7 +118,7 @@ def _expected_level(
     if sensor.kind != 'motor_torque' or sensor.of not in motors:
         return False
     motor = motors[sensor.of]
-    return level > 0.98 * min(motor.torque_limit, motor.controller.limit)
+    return level > 0.98 * motor.largest
 
 
 def _from_the_others(

@@ -46,7 +46,7 @@ def strong_words(recordings: Sequence[Recording], instrument: Instrument) -> tup
     :param instrument: with the limits of its motors and controllers.
     :return: a sentence for each motor.
     """
-    limits = {m.name: min(m.torque_limit, m.controller.limit) for m in instrument.motors}
+    limits = {m.name: m.largest for m in instrument.motors}
     found = []
     for sensor in instrument.sensors:
         if sensor.kind != 'motor_torque':
