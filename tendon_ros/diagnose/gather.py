@@ -20,6 +20,7 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 
 SHOWN = 30  # rivals
+LOUD = 3.0  # times the noise that is accounted for, beyond which what is heard is something else
 
 
 def traces(ready: Prepared, final: Model) -> tuple[Trace, ...]:
@@ -153,6 +154,33 @@ def absurd_words(moved: Sequence[Moved]) -> list[str]:
         for one in moved
         if one.absurd
     ]
+
+
+def loud_words(ready: Prepared) -> list[str]:
+    """
+    Say which channels scatter far more than their sensors and the encoders' counts account for.
+
+    :param ready: the problem, with its noise.
+    :return: a sentence for each of whose sensor the file tells the noise.
+    """
+    powers: dict[str, list[tuple[float, float]]] = {}
+    for segment, counts in zip(ready.whole.rollouts.segments, ready.noise.counts, strict=True):
+        for m, counted in zip(segment.measured, counts, strict=True):
+            told = m.floor**2 + float(np.mean(counted**2))
+            if m.floor > 0.0:
+                own = powers.setdefault(m.sensor.channel, [])
+                own.append((float(np.mean(m.noise**2)), told))
+    found = []
+    for channel, parts in powers.items():
+        heard, told = np.mean(parts, axis=0)
+        times = math.sqrt(heard / told)
+        if times > LOUD:
+            found.append(
+                f'{channel} scatters {times:.0f} times as much as its sensor and the counts of '
+                'the encoders account for: what shakes or knocks faster than the model is '
+                'compared (a play, a fast ripple, a loop near its limit) is taken for noise here'
+            )
+    return found
 
 
 def rivals(found: Found) -> tuple[Rival, ...]:

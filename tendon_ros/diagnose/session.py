@@ -168,6 +168,7 @@ def diagnose(
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *([ASTRAY] if astray else []),
             *loops.left_out,
+            *gather.loud_words(heard),
             *gather.absurd_words(moved),
             *patience.words(found.unmet),
         ),
