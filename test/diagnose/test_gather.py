@@ -24,5 +24,5 @@ def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured
         body = replace(body, sensors=tuple(sensors))
     words = loud_words(prepared([run], body))
     assert [w.split()[0] for w in words] == ([EFFORT] if more and told else [])
-    # the sensor's own noise is 5 mN m
-    assert all('10 times' in w or '9 times' in w for w in words)
+    # the sensor's own noise is 5 mN m, and counts make some more
+    assert all(4 <= int(w.split()[2]) <= 10 for w in words)
