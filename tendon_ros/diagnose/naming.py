@@ -131,6 +131,8 @@ def judged(
         why = ''
         if alike.get(key):
             why = f'the data cannot tell it from {", ".join(alike[key])}'
+        elif key in named:
+            why = ''  # beside other causes it was seen, whatever trace it left at first
         elif candidate.effect in BETWEEN and candidate.place in lone:
             why = (
                 'it acts between bodies: describe what is behind it as a second one, coupled to it'
