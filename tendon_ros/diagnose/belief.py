@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, is_polled, spent
+from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, is_polled, spent, vanishes
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.found import Found
@@ -214,4 +214,9 @@ def _open(problem: Problem, found: Found, k: int) -> bool:
     """Return whether nobody was tried in its place, or no value of it tells what is there."""
     model = found.final.model
     cause = model.causes[k]
-    return cause in found.unmet or spent(cause, model.values(k)) or excuses(problem, model, k)
+    return (
+        cause in found.unmet
+        or spent(cause, model.values(k))
+        or excuses(problem, model, k)
+        or vanishes(problem, model, k)
+    )

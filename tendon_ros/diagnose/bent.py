@@ -14,6 +14,7 @@ import numpy as np
 
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.diagnose.parts import simpler
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
@@ -38,6 +39,8 @@ YIELDS = 0.25
 #: [rad] that no joint turns, and times as far as anything turns, if that is farther: a spring that
 #: is relaxed beyond is a constant torque
 TURN, BEYOND = 2.0 * math.pi, 2.0
+#: part of static friction that slides at least, where nothing else rubs
+GONE = 0.05
 #: times a factor may still go before its bound, where it is as good as there
 SPENT = 1.5
 #: part of the widest knee of a torque limit, or of the bound of an amplitude, from which on it is
@@ -120,6 +123,27 @@ def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, flo
     angles = [np.abs(segment.motion.value) for segment in problem.rollouts.segments]
     turned = max((float(a.max()) for a in angles if a.size), default=0.0)
     return abs(values['rest']) > max(TURN, BEYOND * turned)
+
+
+def vanishes(problem: Problem, model: Model, k: int) -> bool:
+    """
+    Return whether a cause is friction that is gone once anything moves, and nothing else rubs.
+
+    It holds whatever a resting motor reports and does nothing else: so a limit that nobody knows
+    of is told, or a push. Machines rub in motion by a third and more of what they hold with.
+
+    :param problem: the data.
+    :param model: causes.
+    :param k: which of them.
+    :return: whether.
+    """
+    cause, values = model.causes[k], model.values(k)
+    if cause.effect != 'stribeck_friction' or values['sliding'] > GONE * values['static']:
+        return False
+    rubbing = {c.place for n, c in enumerate(model.causes) if n != k and c.dry}
+    own = problem.rollouts.instrument.effects
+    rubbing |= {use.place for use in own if find(use.effect).dry}
+    return cause.place not in rubbing
 
 
 def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:

@@ -14,10 +14,13 @@ from tendon_ros.diagnose.bent import (
     excuses,
     is_constant,
     spent,
+    vanishes,
 )
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
+
+LOAD = (Candidate('tension_friction', 'pulley_3'), {'coefficient': 0.1})
 
 
 @pytest.mark.parametrize(
@@ -46,6 +49,20 @@ from tendon_ros.model.instrument_file import load_instrument
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):
     assert degenerate(sound_problem, Candidate(effect, place), values) is bent
+
+
+@pytest.mark.parametrize(
+    ('sliding', 'beside', 'gone'), [(0.001, (), True), (0.06, (), False), (0.001, (LOAD,), False)]
+)
+def test_friction_that_only_holds_is_none_where_nothing_else_rubs(
+    sound_problem, sliding, beside, gone
+):
+    model = sound_problem.empty
+    for candidate, values in beside:
+        model = model.joined(candidate, values)
+    holds = {'static': 0.2, 'sliding': sliding, 'speed': 0.001}
+    model = model.joined(Candidate('stribeck_friction', 'pulley_3'), holds)
+    assert vanishes(sound_problem, model, len(beside)) is gone
 
 
 def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
