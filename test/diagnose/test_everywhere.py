@@ -88,7 +88,7 @@ def test_guesses_that_explain_all_but_noise_ask_for_no_many(measured_on, monkeyp
 
     # the inertia has gone as far both times
     assert searched() == (True, 0)
-    assert searched(('coulomb_friction', 'pulley_axis', {'torque': 0.05})) == (True, 1)
+    assert searched(('coulomb_friction', 'pulley_axis', {'torque': 0.1})) == (True, 1)
 
 
 def test_of_causes_that_undo_each_other_one_goes_first(measured_on):

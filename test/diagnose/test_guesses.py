@@ -114,6 +114,6 @@ def test_what_may_be_instead_is_an_equal_rival_or_that_a_doubted_cause_is_not_th
     rival = Rival(STRIBECK, problem.fitted(problem.empty.joined(STRIBECK, values)))
     worse = Rival(Candidate('gravity', 'pulley_axis'), start)
     found = Found(states=[start, final], rivals=[[rival, worse]], without=[start])
-    doubted = Belief((None,), {}, (), (), (), None)
+    doubted = Belief((None,), {}, (), (), (), None, ())
     assert alternatives(problem, found, doubted) == [rival.fit, start]
     assert alternatives(problem, found, replace(doubted, accepted=(0,))) == [rival.fit]
