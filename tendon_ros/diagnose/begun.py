@@ -75,9 +75,9 @@ class Begun:
         others = [
             c
             for c in (self._steps.candidates if among is None else among)
-            if c.effect == cause.effect and c not in state.model.causes and c.given == cause.given
+            if c.effect == cause.effect and c not in state.model.causes
         ]
-        return self._instead(state, cause, [(c, values) for c in others])
+        return self._instead(state, cause, [(c, c.as_much(cause, values)) for c in others])
 
     def beside_the_others(
         self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]

@@ -15,11 +15,13 @@ from tendon_ros.diagnose.gap import noise_of
 from tendon_ros.diagnose.intervals import number_intervals
 from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 
 SHOWN = 30  # rivals
+WORSE = 1.2  # times as far off as by the file, and as noise, that a channel is worse
 LOUD = 3.0  # times the noise that is accounted for, beyond which what is heard is something else
 
 
@@ -181,6 +183,22 @@ def loud_words(ready: Prepared) -> list[str]:
                 'compared (a play, a fast ripple, a loop near its limit) is taken for noise here'
             )
     return found
+
+
+def worse_words(channels: Sequence[ChannelGap]) -> list[str]:
+    """
+    Say which channels are foretold worse with what was found than by the file.
+
+    :param channels: the gaps, before and after.
+    :return: a sentence for each that has a gap then.
+    """
+    return [
+        f'{gap.channel} is foretold worse than by the file ({gap.before:.3g} → {gap.after:.3g} '
+        f'{gap.unit}, noise {gap.noise_floor:.3g}): what was fitted to other channels does not '
+        'hold there, so mistrust the numbers that moved'
+        for gap in channels
+        if gap.after > WORSE * max(gap.before, gap.noise_floor)
+    ]
 
 
 def rivals(found: Found) -> tuple[Rival, ...]:

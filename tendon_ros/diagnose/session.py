@@ -169,6 +169,7 @@ def diagnose(
             *([ASTRAY] if astray else []),
             *loops.left_out,
             *gather.loud_words(heard),
+            *gather.worse_words(channels),
             *gather.absurd_words(moved),
             *patience.words(found.unmet),
         ),

@@ -45,6 +45,24 @@ class Candidate:
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
 
+    def as_much(self, other: Candidate, values: Mapping[str, float]) -> dict[str, float]:
+        """
+        Return parameters with which this changes as much as the same effect elsewhere.
+
+        :param other: the effect at the other place, where the file may have another size of it.
+        :param values: of its parameters.
+        :return: of this one's; a shape that the file gives stays.
+        """
+        known = dict(self.given)
+        found = {}
+        for p, q in zip(self.parameters, other.parameters, strict=True):
+            if p.is_shape:
+                found[p.name] = known.get(p.name, values[p.name])
+            else:
+                changed = values[p.name] - q.neutral + p.neutral
+                found[p.name] = min(max(changed, p.low), p.high)
+        return found
+
     @property
     def instants(self) -> tuple[Parameter, ...]:
         """The parameters that are times of the recording."""

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.gather import loud_words
+from tendon_ros.diagnose.gather import loud_words, worse_words
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.model.instrument_file import load_instrument
 
 EFFORT = 'actuator/pulley_body/effort'
@@ -26,3 +27,13 @@ def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured
     assert [w.split()[0] for w in words] == ([EFFORT] if more and told else [])
     # the sensor's own noise is 5 mN m, and counts make some more
     assert all(4 <= int(w.split()[2]) <= 10 for w in words)
+
+
+@pytest.mark.parametrize(
+    ('before', 'after', 'said'), [(1.1, 1.7, True), (1.1, 1.2, False), (0.5, 0.9, False)]
+)
+def test_a_channel_that_others_spoil_is_said(before, after, said):
+    gap = ChannelGap(
+        channel=EFFORT, unit='N m', before=before, after=after, noise_floor=0.9, ci95=(0.0, 2.0)
+    )
+    assert bool(worse_words([gap])) is said

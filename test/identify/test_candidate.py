@@ -129,3 +129,20 @@ def test_an_event_can_be_of_one_recording():
     assert not slip.acts_in('contact')
     assert Candidate('cable_slip', 'cable_12').acts_in('contact')
     assert [p.name for p in slip.instants] == ['time']
+
+
+def test_an_effect_of_the_file_begins_from_as_much_more_as_was_found_elsewhere():
+    here = Candidate('tension_friction', 'pulley_1', given=(('coefficient', 0.03),))
+    there = Candidate('tension_friction', 'pulley_2')
+    assert here.as_much(there, {'coefficient': 0.02}) == {'coefficient': pytest.approx(0.05)}
+    assert there.as_much(here, {'coefficient': 0.05}) == {'coefficient': pytest.approx(0.02)}
+    # within its bounds; and the shape that the file gives stays
+    assert here.as_much(there, {'coefficient': 1.0}) == {'coefficient': 1.0}
+    file = (('static', 0.1), ('sliding', 0.05), ('speed', 0.3))
+    known = Candidate('stribeck_friction', 'pulley_1', given=file)
+    found = {'static': 0.02, 'sliding': 0.01, 'speed': 0.1}
+    assert known.as_much(Candidate('stribeck_friction', 'pulley_2'), found) == {
+        'static': pytest.approx(0.12),
+        'sliding': pytest.approx(0.06),
+        'speed': 0.3,
+    }
