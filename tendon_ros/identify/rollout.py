@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
 from tendon_ros.identify.effort import Effort
+from tendon_ros.identify.means import averaged
 from tendon_ros.identify.segment import Segment
 from tendon_ros.identify.step_size import fineness, TOLERANCE
 from tendon_ros.identify.true_motion import true_motion
@@ -220,7 +221,8 @@ class Rollouts:
     def _told(self, n: int, rows: Rows, numbers: Numbers) -> FloatArray:
         """Return what a recording would have of what the model does."""
         segment = self.segments[n]
-        found = rows.reading[:, self._columns[n]].T
+        readings = np.array([m.readings for m in segment.measured])
+        found = averaged(rows.reading[:, self._columns[n]].T, readings)
         found = as_held(rows, numbers, segment, found)
         reported = as_reported(rows.instrument, numbers, segment, found, self.usual)
         return _zeroed(segment, reported)

@@ -45,7 +45,8 @@ class Measured:
     shape (bins,): what the sensor and the motion's counts leave uncertain in a bin's mean;
     ``floor`` is what the sensor alone would by its data sheet; ``counted`` is the part of the
     noise's power that has a shape: what still encoders leave, and what does not repeat itself.
-    ``misfit``, in the sensor's unit, is what models of this machine leave of the channel.
+    ``misfit``, in the sensor's unit, is what models of this machine leave of the channel;
+    ``readings`` are as many as a bin's mean is of.
     """
 
     sensor: Sensor
@@ -54,6 +55,7 @@ class Measured:
     floor: float
     counted: float = 1.0
     misfit: float = 0.0
+    readings: float = 1.0
 
     @cached_property
     def doubt(self) -> FloatArray:
@@ -169,8 +171,8 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     for sensor in instrument.sensors:
         if sensor.channel in known or sensor.channel not in recording:
             continue
-        value, noise = binned(recording[sensor.channel], sensor, start, period, bins)
-        measured.append(Measured(sensor, value, np.full(bins, noise), noise))
+        value, noise, readings = binned(recording[sensor.channel], sensor, start, period, bins)
+        measured.append(Measured(sensor, value, np.full(bins, noise), noise, readings=readings))
     return Segment(
         name=recording.name,
         period=period,

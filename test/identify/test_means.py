@@ -1,0 +1,29 @@
+"""Means over bins, and what a smooth prediction in their middles is as such a mean."""
+
+import numpy as np
+import pytest
+
+from tendon_ros.base.recording import Channel
+from tendon_ros.identify.means import averaged, binned
+from tendon_ros.model.instrument import Sensor
+
+PERIOD, BINS = 0.02, 200
+SENSOR = Sensor('encoder_jaw', 'pulley/pulley_jaw/position', 'angle', 'jaw')
+
+
+@pytest.mark.parametrize('each', [1, 2, 5, 20])
+def test_a_curved_signal_in_the_middles_becomes_the_mean_of_its_readings(each):
+    def signal(time):
+        return np.sin(2.0 * np.pi * 3.0 * time)
+
+    middles = PERIOD * (np.arange(BINS) + 0.5)
+    within = (np.arange(each) + 0.5) / each
+    time = (PERIOD * (np.arange(BINS)[:, None] + within)).ravel()
+    channel = Channel(SENSOR.channel, time, signal(time))
+    means, _, readings = binned(channel, SENSOR, 0.0, PERIOD, BINS)
+    assert readings == pytest.approx(each)
+    found = averaged(signal(middles)[None], np.array([readings]))[0]
+    inner = slice(2, -2)
+    plain = np.abs(signal(middles) - means)[inner].max()
+    left = np.abs(found - means)[inner].max()
+    assert left < 1e-12 if each == 1 else left < 0.05 * plain
