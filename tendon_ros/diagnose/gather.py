@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import unit_of
 from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.evidence import Floor, Moved, Rival, Step, Trace
@@ -17,6 +18,7 @@ from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -183,6 +185,26 @@ def loud_words(ready: Prepared) -> list[str]:
                 'compared (a play, a fast ripple, a loop near its limit) is taken for noise here'
             )
     return found
+
+
+def pushed_words(ready: Prepared) -> list[str]:
+    """
+    Say in which recordings the measured load pushes the model, since no wall of the file fits.
+
+    :param ready: the problem.
+    :return: a sentence, if there are any.
+    """
+    rollouts = ready.whole.rollouts
+    known = {d.pulley for d in drives(rollouts.instrument) if d.by_torque}
+    pushed = [s.name for s in rollouts.segments if not known.issuperset(s.pushed)]
+    walls = listed(c.name for c in rollouts.instrument.contacts if c.enabled)
+    if not pushed or walls == 'none':
+        return []
+    return [
+        f'no wall of the file ({walls}) fits what was met in {listed(pushed)}: there the measured '
+        'load pushes the model and is no longer compared; correct position and stiffness of the '
+        'wall where there is one'
+    ]
 
 
 def worse_words(channels: Sequence[ChannelGap]) -> list[str]:

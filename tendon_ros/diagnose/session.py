@@ -168,6 +168,7 @@ def diagnose(
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *([ASTRAY] if astray else []),
             *loops.left_out,
+            *gather.pushed_words(heard),
             *gather.loud_words(heard),
             *gather.worse_words(channels),
             *gather.absurd_words(moved),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose.gather import pushed_words
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -20,6 +21,7 @@ def test_contacts_are_found_for_each_recording(bench, pressed, free):
     assert second.contacts == ()
     assert not first.pushed
     assert not second.pushed
+    assert pushed_words(ready) == []
 
 
 def test_contacts_are_found_without_a_load_cell(bench, pressed, free, only):
@@ -93,6 +95,8 @@ def test_a_measured_load_pushes_where_no_wall_fits(bench, measured_on):
     ready = prepared([run], bench)
     [segment] = ready.whole.rollouts.segments
     assert segment.pushed == ('2',)
+    [words] = pushed_words(ready)
+    assert 'load pushes the model and is no longer compared' in words
     left = ready.whole.left(ready.whole.empty)
     assert np.mean(left**2) < 2.0
 
