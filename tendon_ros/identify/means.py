@@ -72,13 +72,17 @@ def averaged(value: FloatArray, readings: FloatArray) -> FloatArray:
 
     A mean of something curved is not what it is in the middle: of a bin of length T off by its
     second derivative times T^2/24, and of n readings in it by 1 - 1/n^2 of that. Between a joint
-    and what turns it, a stiff cable makes of that more torque than a light joint's inertia.
+    and what turns it, a stiff cable makes of that more torque than a light joint's inertia. What
+    jumps stays as it is.
 
     :param value: in the middles of bins, shape (channels, bins).
     :param readings: of each channel in a bin, shape (channels,).
-    :return: shape (channels, bins); those at the ends as they are.
+    :return: shape (channels, bins); the two at each end as they are.
     """
     part = (1.0 - 1.0 / readings**2) / 24.0
+    bend = np.diff(value, 2, axis=1)
+    # a jump bends one way and at once the other: nothing is smooth there
+    smooth = (bend[:, 1:-1] * bend[:, :-2] > 0.0) & (bend[:, 1:-1] * bend[:, 2:] > 0.0)
     found = value.copy()
-    found[:, 1:-1] += part[:, None] * np.diff(value, 2, axis=1)
+    found[:, 2:-2] += part[:, None] * np.where(smooth, bend[:, 1:-1], 0.0)
     return found
