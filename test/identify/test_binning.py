@@ -36,6 +36,18 @@ def swinging(frequency, seconds=4.0, count=0.0):
     )
 
 
+def inertia_of(body, run):
+    """Return the inertia that a fit finds, by the file's."""
+    problem = prepared([run], body).problem
+    fit = problem.fitted(problem.empty)
+    [inertia] = [
+        t.use(z).parameters[t.parameter]
+        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
+        if t.quantity == 'inertia'
+    ]
+    return inertia
+
+
 def test_fast_motion_has_short_bins(rig):
     assert bin_length([swinging(1.0)], rig) == pytest.approx(0.008)
     assert bin_length([swinging(10.0)], rig) == pytest.approx(0.004)
@@ -48,14 +60,7 @@ def test_coarse_counts_have_longer_bins_and_leave_inertia_as_it_is(rig):
     body = replace(rig, sensors=coarse, tolerances=guessed)
     run = swinging(1.0, 10.0, count)
     assert 0.012 < bin_length([run], body) <= 0.04
-    problem = prepared([run], body).problem
-    fit = problem.fitted(problem.empty)
-    [inertia] = [
-        t.use(z).parameters[t.parameter]
-        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
-        if t.quantity == 'inertia'
-    ]
-    assert inertia == pytest.approx(1.0, abs=0.04)
+    assert inertia_of(body, run) == pytest.approx(1.0, abs=0.04)
     # a torque against which inertia is small asks for no longer ones
     loaded = run.with_channels([replace(run[TORQUE], value=run[TORQUE].value + 10.0)])
     assert bin_length([loaded], body) == pytest.approx(0.008)
@@ -68,14 +73,7 @@ def test_the_coarser_counts_are_the_longer_are_bins_of_slow_motion(rig, frequenc
     body = replace(rig, sensors=coarse, tolerances={'pulley_body.inertia': math.inf})
     run = swinging(frequency, 20.0, count)
     assert low < bin_length([run], body) <= high
-    problem = prepared([run], body).problem
-    fit = problem.fitted(problem.empty)
-    [inertia] = [
-        t.use(z).parameters[t.parameter]
-        for t, z in zip(problem.tolerances, fit.model.moved, strict=True)
-        if t.quantity == 'inertia'
-    ]
-    assert inertia == pytest.approx(1.0, abs=0.06)
+    assert inertia_of(body, run) == pytest.approx(1.0, abs=0.06)
 
 
 @pytest.mark.parametrize('seconds', [3.0, 5.0])
