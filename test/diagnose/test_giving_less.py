@@ -92,7 +92,12 @@ def test_the_stretch_is_found_in_short_and_long_ones(bins):
 
 def test_what_went_along_with_it_is_not_written(bench, measured_on, spoilt):
     """Numbers within tolerance, moved to what nothing explains, foretell worse than the file."""
-    runs = spoilt((measured_on(bench),), EFFORT, dipped)
+
+    def halved(time, value):
+        less = (time >= WHEN['start']) & (time < WHEN['start'] + WHEN['duration'])
+        return time, np.where(less, 2.0 * value, value)
+
+    runs = spoilt((measured_on(bench),), EFFORT, halved)
     outcome = diagnose(runs, bench, jobs=1, plan=False)
     assert outcome.diagnosis.verdict == 'unexplained'
     assert any('left as they are' in line for line in outcome.diagnosis.left_out)

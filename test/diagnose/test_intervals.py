@@ -132,7 +132,8 @@ def test_no_number_of_recordings_tells_the_scale_of_what_is_guessed(measured_on)
         assert unsized(problem, fit) == frozenset()
         # parts of what was found: each fit ends where it likes on the way along the scale
         widths.append((high - low) / fit.model.values(0)['torque'])
-    assert widths[1] > 0.5 * widths[0]
+    # with a known scale it would be some hundredths
+    assert min(widths) > 1.0
 
 
 def test_waves_are_counted_along_the_whole_way():
