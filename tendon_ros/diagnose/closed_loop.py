@@ -54,8 +54,7 @@ def closed_loop_gap(
     :param segments: which contacts were there, and the noise.
     :return: gaps by channel, most first, and the traces.
     """
-    loose = [m.name for m in before.motors if m.controller is None]
-    if loose:
+    if loose := before.uncontrolled:
         commanded = any(name.startswith('setpoint/') for r in recordings for name in r.channels)
         said = f'no closed loop: {before.name} has no controller of {listed(loose)}'
         return ClosedLoop(left_out=(said,) if commanded else ())

@@ -277,9 +277,8 @@ def _moves(cause: Candidate, at: int) -> list[list[tuple[int, float]]]:
     searched = [p.search for p in cause.parameters]
     begin = [at + n for n, search in enumerate(searched) if search == 'instant']
     lasts = [at + n for n, search in enumerate(searched) if search == 'duration']
-    whole = [[(j, 1.0)] for j in begin]
     return [
-        *whole,
+        *([(j, 1.0)] for j in begin),
         *([(j, 1.0), (k, -1.0)] for j in begin for k in lasts),
         *([(k, 1.0)] for k in lasts),
     ]

@@ -118,8 +118,7 @@ class Motor:
     @property
     def largest(self) -> float:
         """The largest torque that it gives [N m]."""
-        asked = self.controller.limit if self.controller else math.inf
-        return min(self.torque_limit, asked)
+        return min(self.torque_limit, (self.controller or Controller()).limit)
 
 
 @dataclass(frozen=True)
@@ -221,6 +220,11 @@ class Instrument:
     def motor_names(self) -> tuple[str, ...]:
         """Names of the motors, in order."""
         return tuple(m.name for m in self.motors)
+
+    @property
+    def uncontrolled(self) -> tuple[str, ...]:
+        """Names of the motors that nothing makes follow a command."""
+        return tuple(m.name for m in self.motors if m.controller is None)
 
     @property
     def driven(self) -> tuple[str, ...]:

@@ -47,8 +47,7 @@ class Simulation:
         tolerance: float = TOLERANCE,
         pose: Mapping[str, float] | None = None,
     ) -> None:
-        loose = [motor.name for motor in instrument.motors if motor.controller is None]
-        if loose:
+        if loose := instrument.uncontrolled:
             raise InstrumentError(
                 f'{instrument.name}: nothing makes {listed(loose)} follow a command: give '
                 f'motors.{loose[0]}.controller, such as {{kp: 10 N*m/rad, limit: 2 N*m}}; without '
