@@ -66,14 +66,17 @@ def patched(
         curves[own] = _reaching(curves[own], tight)
         damping = max(0.0, loop.damping + moved.get((place, 'damping'), 0.0))
         loops.append(replace(loop, curve=own, pretension=tight, damping=damping))
-    contacts = tuple(
-        replace(
-            c,
-            stiffness=c.stiffness * moved.get((contact_place(instrument, c), 'stiffness'), 1.0),
-            position=c.position + moved.get((contact_place(instrument, c), 'position'), 0.0),
+    contacts = []
+    for c in instrument.contacts:
+        place = contact_place(instrument, c)
+        contacts.append(
+            replace(
+                c,
+                stiffness=c.stiffness * moved.get((place, 'stiffness'), 1.0),
+                damping=max(0.0, c.damping + moved.get((place, 'damping'), 0.0)),
+                position=c.position + moved.get((place, 'position'), 0.0),
+            )
         )
-        for c in instrument.contacts
-    )
     # a motor's torque constant is no number of the file: it stays an effect
     known = [t.use(z) for t, z in far if t.given or t.quantity == 'torque_gain']
     accepted = [
@@ -87,7 +90,7 @@ def patched(
         loops=tuple(loops),
         couplings=couplings,
         curves=tuple(c for name, c in curves.items() if name in used),
-        contacts=contacts,
+        contacts=tuple(contacts),
         effects=in_force(instrument.effects, [*known, *accepted, *bent]),
     )
 

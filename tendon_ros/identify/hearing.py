@@ -2,7 +2,8 @@
 What of a series is noise: what bins near each other do not share.
 
 Motion is the same a few bins later, noise is not. What shakes is neither: within some hundredths
-of a second it goes to and fro like noise, and a whole period later it is where it was.
+of a second it goes to and fro like noise, and a whole period later it is where it was. Nor is what
+stands out now and then, for longer than a bin: gears that meet again after their play, say.
 """
 
 from __future__ import annotations
@@ -54,10 +55,10 @@ def heard(left: FloatArray, apart: int) -> float:
     def power(lag: int) -> float:
         # second differences: what a wrong model leaves of a motion is nearly straight for so long
         bend = known[2 * lag :] - 2.0 * known[lag:-lag] + known[: -2 * lag]
-        return float(np.median(np.abs(bend))) ** 2 if bend.size else math.inf
+        return _typical(bend) ** 2 if bend.size else math.inf
 
     found = _quietest(power, apart, known.size)
-    return 1.4826 * math.sqrt(found / 6.0) if math.isfinite(found) else 0.0
+    return math.sqrt(found / 6.0) if math.isfinite(found) else 0.0
 
 
 def unshared(left: FloatArray, apart: int) -> float:
@@ -74,7 +75,19 @@ def unshared(left: FloatArray, apart: int) -> float:
         return 0.5 * float(step @ step) / len(step) if step.size else math.inf
 
     # as much as noise is for certain no shaking, and all of it is soon said
-    return found if (found := power(apart)) <= LOUD else _quietest(power, apart, left.size)
+    found = power(apart)
+    if found > LOUD:
+        found = _quietest(power, apart, left.size)
+    if found <= 1.0:
+        return found
+    # a sensor's spikes last for one reading
+    usual = _typical(left[apart:] - left[:-apart]) ** 2 / 2.0
+    return min(found, max(1.0, power(1), usual))
+
+
+def _typical(values: FloatArray) -> float:
+    """Return the deviation of a series that may stand out now and then."""
+    return 1.4826 * float(np.median(np.abs(values)))
 
 
 def _quietest(power: Callable[[int], float], apart: int, count: int) -> float:

@@ -17,7 +17,7 @@ from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.effect_use import units_at
-from tendon_ros.model.instrument import contact_place, EffectUse, Instrument
+from tendon_ros.model.instrument import Contact, contact_place, EffectUse, Instrument
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
 MEASURED = 0.02
@@ -25,9 +25,10 @@ DAMPING = 0.06  # dampings are never known as well
 REACH = 3.0  # deviations; what lies beyond is a cause
 #: damping that a guess of zero may become, one deviation [N m s/rad]
 SOME_DAMPING = 0.01
-#: [s] by which the damping of a cable or a coupling delays its force, if a guess of zero is one
-#: deviation off
+#: [s] by which the damping of a cable, a coupling or a contact delays its force, if a guess of
+#: zero is one deviation off
 YIELDING = 1e-3
+SOME_LOSS = 1.0  # the same of a contact whose force is a factor on its spring's [s/m]
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,8 @@ def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, 
     :param looser: times what is usual that numbers are off of which the file says nothing.
     :return: its inertias, dampings, preloads and stiffnesses, with the tolerance of the file or,
         where it names none, that of a careful measurement; torque constants, contact positions
-        and parameters of the file's effects where it gives a tolerance.
+        and parameters of the file's effects where it gives a tolerance; dampings of contacts also
+        where it says nothing of them.
     """
     stated = instrument.tolerances
     own = {(use.effect, use.place): use.parameters for use in instrument.effects}
@@ -123,6 +125,8 @@ def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, 
         spread = stated.get(f'{place}.position', 0.0)
         axis = _addition('position', 'rad', 1.0, spread, 0.05)
         movable('contact_position', place, 'position', axis)
+        axis = _yielding(contact, stated.get(f'{place}.damping'))
+        movable('contact_stiffness', place, 'damping', axis)
     return tuple(found)
 
 
@@ -152,6 +156,21 @@ def _damped(instrument: Instrument) -> Iterator[tuple[str, str, float, float]]:
     for coupling in instrument.couplings:
         place = f'coupling_{coupling.name}'
         yield place, 'N m s/rad', coupling.damping, coupling.stiffness
+
+
+def _yielding(contact: Contact, spread: float | None) -> Axis | None:
+    """
+    Return the axis of what is added to the damping of a contact.
+
+    What the tip meets is rarely measured: where the file says nothing of its damping, there is
+    some.
+    """
+    by_spring = contact.law == 'spring_damper'
+    unit = 'N s/m' if by_spring else 's/m'
+    some = YIELDING * contact.stiffness if by_spring else SOME_LOSS
+    if spread is None and contact.damping == 0.0:
+        return Axis('damping', unit, 0.0, REACH * some, 0.0, some, spread=1.0)
+    return _addition('damping', unit, contact.damping, spread or 0.0, some, -contact.damping)
 
 
 def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:

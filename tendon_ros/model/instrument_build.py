@@ -8,7 +8,6 @@ from dataclasses import replace
 import math
 
 from tendon_ros.base.errors import EffectError, InstrumentError
-from tendon_ros.base.quantity import parsed
 from tendon_ros.base.recording import channel_name
 from tendon_ros.model.effect_use import checked_use, units_at
 from tendon_ros.model.instrument import (
@@ -153,22 +152,34 @@ def _contact(name: str, section: ContactSection) -> Contact:
         route=dict(section.route),
         arm=section.arm,
         stiffness=section.stiffness.value,
-        damping=_late(f'contacts.{name}.damping', section.damping, DAMPING_UNITS[section.law]),
+        damping=_damping(name, section).value,
         position=section.position.value,
         law=section.law,
         enabled=section.enabled,
     )
 
 
+def _damping(name: str, section: ContactSection) -> Stated:
+    """Read a contact's damping, whose unit its law tells, and how well it is known."""
+    return _late_stated(f'contacts.{name}.damping', section.damping, DAMPING_UNITS[section.law])
+
+
 def _late(field: str, text: str, unit: str) -> float:
     """Read an optional quantity, not negative, whose unit depends on another key."""
+    found = _late_stated(field, text, unit)
+    if found.tolerance is not None:
+        raise InstrumentError(f'{field}: {text!r} takes no tolerance')
+    return found.value
+
+
+def _late_stated(field: str, text: str, unit: str) -> Stated:
     try:
-        value = parsed(text, unit) if text else 0.0
+        found = read_stated(text, unit) if text else Stated(0.0)
     except ValueError as error:
         raise InstrumentError(f'{field}: {error}') from None
-    if value < 0.0:
+    if found.value < 0.0:
         raise InstrumentError(f'{field}: {text!r} must be not negative')
-    return value
+    return found
 
 
 def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
@@ -185,6 +196,8 @@ def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
             place = kind if alone else f'{kind}_{name}'
             for key in type(section).model_fields:
                 stated = getattr(section, key)
+                if isinstance(section, ContactSection) and key == 'damping':
+                    stated = _damping(name, section)
                 if isinstance(stated, Stated) and stated.tolerance is not None:
                     yield f'{place}.{key}', stated.tolerance
 

@@ -214,7 +214,7 @@ def _contact(contact: Contact, known: _Known) -> Document:
         'arm': written(contact.arm, 'm'),
         **known.number('stiffness', contact.stiffness, 'N/m'),
         'law': contact.law,
-        **_unless(0.0, damping=(contact.damping, DAMPING_UNITS[contact.law])),
+        **known.number('damping', contact.damping, DAMPING_UNITS[contact.law], 0.0),
         **known.number('position', contact.position, 'rad', 0.0),
         **({} if contact.enabled else {'enabled': False}),
     }

@@ -1,5 +1,8 @@
 """The instrument file that a diagnosis writes: whatever was found, it can be written and read."""
 
+from dataclasses import replace
+import math
+
 import pytest
 
 from tendon_ros.diagnose.patch import patched
@@ -33,3 +36,20 @@ def test_every_effect_can_be_written(problem, rig, tmp_path):
         found = patched(problem, model, instrument, next(iter(candidate.instants), ''))
         save_instrument(found, tmp_path / 'found.yaml')
         assert load_instrument(tmp_path / 'found.yaml') == found
+
+
+def test_the_damping_of_a_wall_is_found_where_the_file_says_nothing(bench, measured_on, tmp_path):
+    [contact] = bench.contacts
+    soft = replace(contact, stiffness=4e3, damping=0.0)
+    damped = replace(soft, damping=2e-3 * soft.stiffness)
+    far = (('duration', '6 s'), ('amplitude', '15 deg'))
+    recording = measured_on(replace(bench, contacts=(damped,)), touching=True, settings=far)
+    silent = replace(bench, contacts=(soft,))
+    problem = prepared([recording], silent).problem
+    found = patched(problem, problem.fitted(problem.empty).model, silent)
+    assert found.contacts[0].damping == pytest.approx(damped.damping, rel=0.2)
+    # a file that calls it a guess is written as one that does
+    guess = replace(found, tolerances={'contact.damping': math.inf})
+    save_instrument(guess, tmp_path / 'guess.yaml')
+    assert 'guessed' in (tmp_path / 'guess.yaml').read_text()
+    assert load_instrument(tmp_path / 'guess.yaml') == guess

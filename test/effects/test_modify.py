@@ -138,7 +138,13 @@ def test_only_the_place_is_changed(effect, kind):
         ('sensor_delay', 'sensor', 2, {'time': 0.01}, {('sensor_delay', 2): 0.011}),
         ('sensor_rectified', 'sensor', 0, {'rectified': 1.0}, {('sensor_rectified', 0): 1.0}),
         ('sensor_rectified', 'sensor', 0, {'rectified': 0.4}, {}),
-        ('contact_stiffness', 'contact', 1, {'scale': 0.5}, {('contact_stiffness', 1): 5e4}),
+        (
+            'contact_stiffness',
+            'contact',
+            1,
+            {'scale': 0.5, 'damping': 3.0},
+            {('contact_stiffness', 1): 5e4, ('contact_damping', 1): 13.0},
+        ),
         ('contact_position', 'contact', 1, {'angle': 0.02}, {('contact_position', 1): 0.12}),
     ],
 )

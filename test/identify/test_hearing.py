@@ -53,6 +53,23 @@ def test_noise_with_a_memory_keeps_all_its_power():
     assert unshared(left / np.std(left), apart) == pytest.approx(1.0, rel=0.1)
 
 
+@pytest.mark.parametrize('lasts', [4, 8])
+def test_what_knocks_now_and_then_is_no_noise(lasts):
+    # a gear whose teeth meet again after each reversal: nothing of it is left 40 ms later
+    left = np.random.default_rng(7).normal(size=4000)
+    for begun in range(100, 4000, 150):
+        left[begun : begun + lasts] += 9.0 * np.exp(-np.arange(lasts) / 2.0)
+    assert np.mean(left**2) > 1.7
+    assert unshared(left, 8) < 0.8 * np.mean(left**2)
+
+
+def test_a_sensor_that_spikes_is_noise():
+    rng = np.random.default_rng(8)
+    left = rng.normal(size=4000)
+    left[rng.random(4000) < 0.02] += 12.0
+    assert unshared(left, 4) == pytest.approx(np.var(left), rel=0.1)
+
+
 def test_a_few_samples_do_not_shake_by_chance():
     # a push of a second at 50 Hz: nothing is a tenth of itself for lying near the ends
     for seed in range(20):

@@ -64,3 +64,17 @@ def test_damping_of_zero_may_only_move_where_it_was_guessed(bench):
     assert not [name for name in by_name(still) if name.endswith('.damping')]
     guessed = replace(still, tolerances={'pulley_2.damping': math.inf})
     assert 'pulley_2.damping' in by_name(guessed)
+
+
+def test_what_the_tip_met_is_rarely_measured(bench):
+    [contact] = bench.contacts
+    assert 'contact.damping' not in by_name(bench)  # the file has a number
+    silent = replace(bench, contacts=(replace(contact, damping=0.0),))
+    some = by_name(silent)['contact.damping']
+    assert (some.effect, some.parameter) == ('contact_stiffness', 'damping')
+    assert some.axis.value(-5.0) == 0.0
+    assert some.axis.value(1.0) == pytest.approx(1e-3 * contact.stiffness)
+    assert not some.guessed
+    guess = by_name(replace(bench, tolerances={'contact.damping': math.inf}))['contact.damping']
+    assert guess.guessed
+    assert guess.axis.value(-1e9) == -contact.damping

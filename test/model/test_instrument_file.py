@@ -219,6 +219,7 @@ FAULTS = [
     ('through: shaft', 'through: x', "shaft_sensors.02.through: no loop or coupling 'x'"),
     ('load_cell: {', 'load_cell: {contact: tap, ', "load_cell.contact: no contact 'tap'"),
     ('noise: 0.05 N}', 'noise: 0.05 N*m}', 'load_cell.noise: '),
+    ('noise: 0.05 N}', 'noise: 0.05 N guessed}', 'load_cell.noise: '),
     ('effects:', 'control: {rate: 0 Hz}\neffects:', 'control.rate: must be positive'),
     ('effects:', 'control: {rate: often}\neffects:', 'control.rate: '),
     ('effects:', 'control: {rate: 1 kHz, period: 1 ms}\neffects:', 'control: has both'),
