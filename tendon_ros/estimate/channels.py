@@ -37,6 +37,11 @@ class OperatingForce:
         """Name of the estimate."""
         return f'estimate/{self.quantity}'
 
+    @property
+    def newton(self) -> float:
+        """What the tip's force of one newton is in the unit of the quantity."""
+        return 1.0 if self.quantity == 'force' else self.contact.arm
+
 
 def operating_force(instrument: Instrument) -> OperatingForce:
     """

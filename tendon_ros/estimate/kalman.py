@@ -28,11 +28,11 @@ from tendon_ros.model.statics import Linearisation, without_contacts
 FloatArray = NDArray[np.float64]
 
 #: how fast the operating force may wander where nothing is known of it: its deviation after a
-#: second [N or N m times 1/sqrt(s)]
+#: second, at the tip [N/sqrt(s)]
 FORCE_WANDER = 5.0
 #: torque on every pulley that the model does not know: its deviation [N m sqrt(s)]
 TORQUE_WANDER = 1e-3
-#: what is known at first: deviation of angles [rad], velocities [rad/s] and force
+#: what is known at first: deviation of angles [rad], velocities [rad/s] and force at the tip [N]
 FIRST_ANGLE, FIRST_VELOCITY, FIRST_FORCE = 0.02, 0.1, 5.0
 
 
@@ -49,9 +49,9 @@ class KalmanObserver(Observer):
         self, instrument: Instrument, *, wander: float | None = None, engine: str = 'auto'
     ) -> None:
         super().__init__(instrument)
-        self._wander = FORCE_WANDER if wander is None else wander
         self._instrument = instrument
         self._operating = operating_force(instrument)
+        self._wander = FORCE_WANDER * self._operating.newton if wander is None else wander
         driven = instrument.driven
         self._positions = tuple(angle_channel(instrument, name) for name in driven)
         self._efforts = tuple(f'actuator/pulley_{name}/effort' for name in driven)
@@ -89,7 +89,7 @@ class KalmanObserver(Observer):
         self._angle[free] = found
         self._velocity = np.zeros(n)
         self._force = 0.0
-        first = [FIRST_ANGLE] * n + [FIRST_VELOCITY] * n + [FIRST_FORCE]
+        first = [FIRST_ANGLE] * n + [FIRST_VELOCITY] * n + [FIRST_FORCE * self._operating.newton]
         self._covariance = np.diag(np.square(first))
         self._runner.rest(dict(zip(self._instrument.pulley_names, self._angle, strict=True)))
         self._begun = True

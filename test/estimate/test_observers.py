@@ -79,6 +79,24 @@ def test_one_at_a_time_is_the_same_as_a_recording(method, bench, pressing):
     assert np.array_equal(live, offline['estimate/force'].value)
 
 
+@pytest.mark.parametrize('method', ['static_balance', 'dynamic'])
+def test_a_load_that_is_a_torque_is_known_as_well_as_its_force(method, bench, pressing):
+    [contact] = bench.contacts
+    cells = [
+        replace(s, kind='contact_torque', channel='load_cell/torque')
+        if s.kind == 'contact_force'
+        else s
+        for s in bench.sensors
+    ]
+    turned = replace(bench, sensors=tuple(cells))
+    by_force = estimate_recording(pressing, build_observer(bench, method))
+    by_torque = estimate_recording(pressing, build_observer(turned, method))
+    for name in ('', '_std'):
+        force = by_force[f'estimate/force{name}'].value
+        torque = by_torque[f'estimate/torque{name}'].value
+        assert torque == pytest.approx(contact.arm * force, rel=1e-6)
+
+
 def test_reset_forgets(bench, pressing):
     """After a reset the same measurements give the same estimates."""
     observer = build_observer(bench, 'dynamic')
