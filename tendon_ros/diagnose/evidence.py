@@ -58,12 +58,17 @@ class Floor:
     how: str
 
 
+#: deviations from what the file says that a number which was measured hardly is
+STRAINED = 2.0
+
+
 @dataclass(frozen=True)
 class Moved:
     """
     A number of the instrument file that moved within its tolerance: factor or addition.
 
-    ``guessed``: the file says that it is no more than a guess.
+    ``guessed``: the file says that it is no more than a guess. ``off``: by how many deviations of
+    its tolerance it has moved; of a guess none.
     """
 
     place: str
@@ -72,6 +77,12 @@ class Moved:
     ci95: tuple[float, float]
     unit: str
     guessed: bool = False
+    off: float = 0.0
+
+    @property
+    def strained(self) -> bool:
+        """Whether it has moved as far as what was measured hardly can: a fault may hide in it."""
+        return self.off > STRAINED
 
     @property
     def absurd(self) -> bool:

@@ -23,6 +23,9 @@ FloatArray = NDArray[np.float64]
 
 #: fits of the best of them that foretell nothing better, after which no more are tried
 REFUSED = 2
+#: by how much one must lower the misfit where it was fitted, in noise power per sample: less than
+#: elsewhere, since blocks that were held out judge it as well
+SOME = 0.01
 #: proposals that are fitted to see which is best
 ASKED = 6
 
@@ -63,7 +66,7 @@ def further(steps: Steps, state: Fit, held: Problem, most: int) -> Fit:
         tried.add(joined)
         grown = problem.fitted(rivals[0].fit.model, rounds=12, accuracy=1e-3)
         values = grown.model.values(grown.model.causes.index(joined))
-        little = state.cost - grown.cost < LEAST * len(state.left)
+        little = state.cost - grown.cost < SOME * len(state.left)
         empty = little or spent(joined, values) or undoing(problem, grown)
         if not empty and foretells(held, state.model, grown.model):
             state = grown

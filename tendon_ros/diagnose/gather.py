@@ -136,7 +136,15 @@ def moved(problem: Problem, final: Fit, others: Sequence[Fit]) -> tuple[Moved, .
     intervals = number_intervals(problem, final, others)
     owned = problem.owned(final.model)
     return tuple(
-        Moved(t.place, t.quantity, t.axis.value(z), interval, t.axis.unit, t.guessed)
+        Moved(
+            t.place,
+            t.quantity,
+            t.axis.value(z),
+            interval,
+            t.axis.unit,
+            t.guessed,
+            0.0 if t.guessed else abs(z),
+        )
         for t, z, interval, still in zip(
             problem.tolerances, final.model.moved, intervals, owned, strict=True
         )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from tendon_ros.diagnose.evidence import STRAINED
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import shrink_of
 from tendon_ros.diagnose.intervals import parameter_intervals
@@ -13,7 +14,8 @@ from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.effect_use import units_at
 
 #: a cause is named from here on
@@ -96,6 +98,7 @@ def judged(
     causes: Sequence[Cause],
     chances: Sequence[float],
     candidates: Sequence[Candidate],
+    strain: Mapping[tuple[str, str], float],
     lone: Collection[str] = (),
 ) -> tuple[Judged, ...]:
     """
@@ -105,6 +108,8 @@ def judged(
     :param causes: that are named.
     :param chances: of all causes that the search ended with.
     :param candidates: all that may be named.
+    :param strain: by effect and place how many deviations a number has moved that was measured
+        (:func:`strained`).
     :param lone: places of bodies that nothing is linked with.
     :return: most probable first.
     """
@@ -137,6 +142,11 @@ def judged(
             why = (
                 'it acts between bodies: describe what is behind it as a second one, coupled to it'
             )
+        elif key in strain:
+            why = (
+                f'its number in the file has moved by {strain[key]:.2g} deviations of its '
+                'tolerance, in which it may hide'
+            )
         elif proposal is None or proposal.seen < SHOWS:
             why = 'at a size worth looking for it leaves no trace in these channels and motions'
         elif proposal.own < OWN * proposal.seen:
@@ -152,3 +162,18 @@ def judged(
             )
         )
     return tuple(sorted(rows, key=lambda r: (-r.probability, r.identifiable)))
+
+
+def strained(problem: Problem, model: Model) -> dict[tuple[str, str], float]:
+    """
+    Return the numbers that were measured and have moved as far as they hardly can.
+
+    :param problem: the fitted bins.
+    :param model: the fitted model.
+    :return: deviations of the tolerance, by the effect and place that move the number.
+    """
+    return {
+        (t.effect, t.place): abs(z)
+        for t, z in problem.moved(model)
+        if not t.guessed and abs(z) > STRAINED
+    }

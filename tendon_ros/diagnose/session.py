@@ -31,7 +31,7 @@ from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
-from tendon_ros.diagnose.naming import causes_of, judged, NAMED, verdict_of, Weighed
+from tendon_ros.diagnose.naming import causes_of, judged, NAMED, strained, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.patience import Patience, USUAL
@@ -152,7 +152,12 @@ def diagnose(
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         beside=tuple(sorted(beside, key=lambda c: c.shrink.after - c.shrink.without_this)),
         candidates=judged(
-            found, causes, [w.chance for w in held.weighed], candidates, alone(instrument)
+            found,
+            causes,
+            [w.chance for w in held.weighed],
+            candidates,
+            strained(heard.problem, final.model),
+            alone(instrument),
         ),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime

@@ -16,6 +16,7 @@ from tendon_ros.report.diagnosis_words import (
     count,
     effect_words,
     inside,
+    known_words,
     moved_words,
     number,
     percent,
@@ -234,8 +235,7 @@ def _basis(evidence: Evidence) -> Section:
 
 def _moved(moved: Moved) -> tuple[str, str, str, str]:
     quantity, by, interval = moved_words(moved)
-    known = ', a guess' if moved.guessed else ''
-    return f'{quantity}{known}', place_words(moved.place), by, interval
+    return f'{quantity}{known_words(moved)}', place_words(moved.place), by, interval
 
 
 def _run(diagnosis: Diagnosis, evidence: Evidence) -> Section:

@@ -23,6 +23,7 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     effect_words,
     inside,
+    known_words,
     likely_at,
     moved_words,
     number,
@@ -33,7 +34,7 @@ from tendon_ros.report.diagnosis_words import (
 
 _WIDTH = 96
 _INDENT = 8
-_PLACES, _CAUSES, _CHANNELS, _GUESSES, _NEXT = 3, 4, 6, 6, 2
+_PLACES, _CAUSES, _CHANNELS, _NUMBERS, _NEXT = 3, 4, 6, 6, 2
 
 
 def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
@@ -41,7 +42,8 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     Return what a terminal shows of a diagnosis: some ten to twenty-five lines.
 
     :param diagnosis: the answer.
-    :param moved: numbers of the file as they were fitted; those that were guesses are told.
+    :param moved: numbers of the file as they were fitted; guesses, and what was measured and has
+        moved far, are told.
     :return: plain text, lines of at most 96 characters, ending in a newline.
     """
     lines = wrap(headline(diagnosis), _WIDTH)
@@ -52,7 +54,7 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     lines += _part('gap', channel_rows(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
-    lines += _guesses([number for number in moved if number.guessed])
+    lines += _numbers([number for number in moved if number.guessed or number.strained])
     if diagnosis.beside:
         lines += _part('beside', [beside_words(diagnosis)])
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])
@@ -71,12 +73,13 @@ def _part(name: str, texts: Sequence[str], more: int = 0) -> list[str]:
     return [f'{head if k == 0 else " " * _INDENT}{line}' for k, line in enumerate(lines)]
 
 
-def _guesses(moved: Sequence[Moved]) -> list[str]:
+def _numbers(moved: Sequence[Moved]) -> list[str]:
     texts = []
-    for guess in moved[:_GUESSES]:
-        quantity, by, interval = moved_words(guess)
-        texts.append(f'{quantity} of {place_words(guess.place)} {by} ({interval}), a guess')
-    return _part('file', texts, len(moved) - _GUESSES)
+    # who measured something wants to hear of it before who guessed
+    for one in sorted(moved, key=lambda number: number.guessed)[:_NUMBERS]:
+        quantity, by, interval = moved_words(one)
+        texts.append(f'{quantity} of {place_words(one.place)} {by} ({interval}){known_words(one)}')
+    return _part('file', texts, len(moved) - _NUMBERS)
 
 
 def _where(diagnosis: Diagnosis) -> list[str]:

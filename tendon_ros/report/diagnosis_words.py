@@ -149,6 +149,18 @@ def moved_words(moved: Moved) -> tuple[str, str, str]:
     return moved.quantity, by, interval
 
 
+def known_words(moved: Moved) -> str:
+    """
+    Return what is to be said of a number that is no careful measurement, or no longer one.
+
+    :param moved: the number.
+    :return: such as ``, a guess``; nothing of most.
+    """
+    if moved.guessed:
+        return ', a guess'
+    return f', {number(moved.off, 2)} deviations off' if moved.strained else ''
+
+
 def sized(value: float, ci95: tuple[float, float], unit: str) -> str:
     """
     Return a value with its unit and its interval; a yes or no has none.

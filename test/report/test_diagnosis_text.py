@@ -166,6 +166,14 @@ def test_guesses_are_told_with_what_became_of_them(case):
     assert 'a guess' not in summary(diagnosis, evidence.moved)
 
 
+def test_what_was_measured_and_has_moved_far_is_told_first(case):
+    diagnosis, evidence = case('three_causes')
+    inertia, preload, *_ = evidence.moved
+    told = summary(diagnosis, [replace(inertia, guessed=True), replace(preload, off=2.7)])
+    assert 'file    pretension of cable 12 × 0.994 (0.981 … 1.007), 2.7 deviations off' in told
+    assert 'deviations off' not in summary(diagnosis, [replace(preload, off=1.9)])
+
+
 def test_friction_of_each_direction_is_said_as_two_effects_too(case):
     diagnosis, _ = case('one_cause')
     sizes = {
