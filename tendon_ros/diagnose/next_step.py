@@ -85,7 +85,17 @@ def next_experiments(
             if len(seen) == SHOWN:
                 break
     chosen.sort(key=lambda pair: pair[0].order)
-    return tuple(dict.fromkeys(one for _, one in chosen))
+    return _merged([one for _, one in chosen])
+
+
+def _merged(experiments: Sequence[NextExperiment]) -> tuple[NextExperiment, ...]:
+    """Return each thing to do once, with all that it separates."""
+    found: dict[tuple[str, str], NextExperiment] = {}
+    for one in experiments:
+        same = found.get(key := (one.do, one.add_channel))
+        separates = dict.fromkeys([*(same.separates if same else ()), *one.separates])
+        found[key] = one.model_copy(update={'separates': tuple(separates)})
+    return tuple(found.values())
 
 
 def _rivals(problem: Problem, found: Found, held: Belief) -> list[Question]:

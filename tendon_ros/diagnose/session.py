@@ -140,7 +140,7 @@ def diagnose(
     loops = closed_loop_gap(runs, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
     ahead: tuple[NextExperiment, ...] = ()
-    if plan:
+    if plan and verdict != 'no_gap':
         names = sorted(measured)
         ahead = next_experiments(instrument, names, problem, found, held, jobs, patience, report)
     moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))

@@ -1,0 +1,39 @@
+"""What to measure next: each thing to do once, with all that it separates."""
+
+from types import SimpleNamespace
+
+from tendon_ros.diagnose import next_step
+from tendon_ros.diagnose.patience import Patience
+from tendon_ros.identify.candidate import Candidate
+
+RUBS = [Candidate('coulomb_friction', f'pulley_{name}') for name in 'abc']
+
+
+def test_one_motion_that_separates_two_pairs_is_proposed_once(bench, monkeypatch):
+    def question(likely, one, other):
+        return likely, {0}, [((one, {}), (other, {}))]
+
+    def separating(_instrument, _measured, pairs, *_):
+        [((one, _), (other, _))] = pairs
+        names = ((one.place, other.place),)
+        common = {'separates': names, 'seconds': 6.0, 'order': 6.0}
+        swing = SimpleNamespace(do='swing', add_channel='', **common)
+        read = SimpleNamespace(do='swing', add_channel=f'pulley/{one.place}/position', **common)
+        return [swing, read]
+
+    questions = [question(0.9, RUBS[0], RUBS[1]), question(0.8, RUBS[1], RUBS[2])]
+    monkeypatch.setattr(next_step, '_rivals', lambda *_: questions)
+    monkeypatch.setattr(next_step, '_members', lambda *_: [])
+    monkeypatch.setattr(next_step, 'separating', separating)
+    monkeypatch.setattr(next_step, 'together', lambda suggestions: suggestions)
+    problem = SimpleNamespace(rollouts=SimpleNamespace(effort=None))
+    found = SimpleNamespace(final=SimpleNamespace(model=SimpleNamespace(causes=[])))
+    told = next_step.next_experiments(
+        bench, [], problem, found, None, 1, Patience(), lambda *_: None
+    )
+    assert [(one.do, one.add_channel) for one in told] == [
+        ('swing', ''),
+        ('swing', 'pulley/pulley_a/position'),
+        ('swing', 'pulley/pulley_b/position'),
+    ]
+    assert told[0].separates == (('pulley_a', 'pulley_b'), ('pulley_b', 'pulley_c'))
