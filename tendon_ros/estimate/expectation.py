@@ -1,66 +1,135 @@
-"""How far a force may have gone since the last estimate: what a measurement is weighed with."""
+"""
+What force and friction are expected to be, from one estimate to the next.
+
+A measurement is weighed with how far the force may have gone since the last one. Dry friction of a
+pulley that rests may be anything, but it stays what it is: whatever the balance of torques says of
+both together is said once, and not again by every measurement of the same rest.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
 
 #: time in which a force may change by as much as it is uncertain at best, where nothing is known
 #: of it; and over which what a model gets wrong is one and the same [s]
 STEADY = 0.02
+#: times the best deviation that a force of which nothing is known has; the same alone [N or N m]
+ANY, ANYWHERE = 1e4, 1e6
+
+
+@dataclass(frozen=True)
+class Expected:
+    """
+    Force and friction before a measurement: ``mean + spread @ z``, z standard normal.
+
+    ``mean``: force [N or N m], then by how much the friction in each balance differs from the
+    model's [N m], shape (1 + rows,); ``spread``: shape (1 + rows, unknowns).
+    """
+
+    mean: FloatArray
+    spread: FloatArray
+
+    @property
+    def force(self) -> float:
+        """Deviation of the force."""
+        return float(np.linalg.norm(self.spread[0]))
 
 
 class Expectation:
     """
-    The deviation of a force that is not measured, from one estimate to the next.
+    Force and friction from one estimate to the next.
 
-    :param least: deviation below which no single measurement is believed [N or N m].
+    :param least: deviation below which no single measurement of the force is believed [N or N m].
     :param wander: by how much the force wanders in a second, as its square root goes on
         [N or N m]; where None it is not expected to change faster than it can be told at best.
+    :param rows: balances of torques.
     """
 
-    def __init__(self, least: float, wander: float | None) -> None:
+    def __init__(self, least: float, wander: float | None, rows: int) -> None:
         self._least = least
         self._wander = wander
+        self._rows = rows
         self.reset()
 
     def reset(self) -> None:
         """Forget what was known."""
-        self._spread = math.inf  # of the last estimate
-        self._known = math.inf  # the same, were errors of the model noise
-        self._best = math.inf  # that a single measurement left so far
+        self._mean = np.zeros(1 + self._rows)
+        self._covariance = np.zeros((1 + self._rows, 1 + self._rows))
+        self._unsure = np.zeros(self._rows)  # friction, of the last estimate
+        self._best = math.inf  # deviation of the force that a single measurement left so far
+        self._begun = False
 
-    def foreseen(self, gap: float) -> float:
+    def foreseen(self, gap: float, unsure: FloatArray, same: FloatArray) -> Expected:
         """
-        Return the deviation of the force about the last estimate.
+        Return what is expected after some time.
 
-        :param gap: since then [s].
-        :return: [N or N m]; infinite before the first.
+        :param gap: since the last estimate [s].
+        :param unsure: by how much the friction in each balance is uncertain [N m], shape (rows,).
+        :param same: how far its error is the one of before, 0 to 1, shape (rows,).
+        :return: the expectation; any force before the first estimate.
         """
-        if not math.isfinite(self._spread) or not gap > 0.0:
-            return math.inf
+        if not self._begun or not gap > 0.0:
+            spread = np.diag(np.append(ANY * self._least or ANYWHERE, unsure))
+            return Expected(np.zeros(1 + self._rows), _pruned(spread))
+        # friction is never more uncertain than anything that it can be
+        less = np.minimum(1.0, unsure / np.maximum(self._unsure, 1e-300))
+        kept = np.append(1.0, same * less)
+        covariance = kept[:, None] * self._covariance * kept
+        covariance[1:, 1:] += np.diag(np.maximum(unsure**2 - (kept[1:] * self._unsure) ** 2, 0.0))
         if self._wander is None:
-            return math.hypot(self._spread, self._best * gap / STEADY)
-        # measurements that share what the model gets wrong count as one
-        return math.hypot(self._known, self._wander * math.sqrt(gap)) * self._share(gap)
+            covariance[0, 0] += (self._best * gap / STEADY) ** 2
+        else:
+            covariance[0, 0] += self._wander**2 * gap
+            # measurements that share what the model gets wrong count as one
+            covariance *= self._share(gap) ** 2
+        return Expected(kept * self._mean, _root(covariance))
 
-    def known(self, variance: float, foreseen: float, gap: float) -> float:
+    def taken(
+        self, mean: FloatArray, covariance: FloatArray, expected: Expected, unsure: FloatArray,
+        gap: float,
+    ) -> float:  # fmt: skip
         """
-        Take an estimate in, and return its deviation.
+        Take an estimate in, and return the deviation of its force.
 
-        :param variance: that the measurement left of the force.
-        :param foreseen: what it was weighed with.
-        :param gap: since the last one [s].
+        :param mean: force and frictions, shape (1 + rows,).
+        :param covariance: that the measurement left of them.
+        :param expected: what it was weighed with.
+        :param unsure: as for :meth:`foreseen`.
+        :param gap: the time since the last one [s].
         :return: [N or N m].
         """
-        variance = max(variance, 1e-300)
-        alone = 1.0 / max(1.0 / variance - foreseen**-2, 1e-300)
+        variance = max(float(covariance[0, 0]), 1e-300)
+        alone = 1.0 / max(1.0 / variance - expected.force**-2, 1e-300)
         self._best = max(self._least, min(self._best, math.sqrt(alone)))
-        share = self._share(gap) if math.isfinite(foreseen) else 1.0
-        self._known = math.sqrt(variance) / share
         # what a model gets wrong does not average out
-        self._spread = max(math.sqrt(variance), self._best)
-        return self._spread
+        spread = max(math.sqrt(variance), self._best)
+        self._mean, self._covariance = mean, covariance.copy()
+        if self._wander is None:
+            self._covariance[0, 0] = spread**2
+        elif self._begun and gap > 0.0:
+            self._covariance /= self._share(gap) ** 2
+        self._unsure = unsure
+        self._begun = True
+        return spread
 
     @staticmethod
     def _share(gap: float) -> float:
         return math.sqrt(min(1.0, gap / STEADY))
+
+
+def _root(covariance: FloatArray) -> FloatArray:
+    """Return a matrix whose square is a covariance."""
+    value, vector = np.linalg.eigh(covariance)
+    return _pruned(vector * np.sqrt(np.maximum(value, 0.0)))
+
+
+def _pruned(spread: FloatArray) -> FloatArray:
+    """Return a spread without what moves nothing."""
+    size = np.linalg.norm(spread, axis=0)
+    return np.asarray(spread[:, size > 1e-9 * size.max()])

@@ -7,7 +7,8 @@ inertia), and the measured torques must be met as well as their noise lets them:
 squares by Gauss-Newton, whose covariance is the stated uncertainty.
 
 Where a pulley rests or turns round torques tell little of the force, since its friction is as
-uncertain as the angles make it. So a measurement is weighed with what the force is expected to be.
+uncertain as the angles make it. So a measurement is weighed with what force and friction are
+expected to be (:mod:`.expectation`).
 """
 
 from __future__ import annotations
@@ -21,11 +22,12 @@ from scipy.linalg.lapack import dgels
 
 from tendon_ros.base.errors import InstrumentError, listed, RecordingError
 from tendon_ros.estimate.channels import (
+    deviation,
     estimated_angles,
     operating_force,
     sensors_of,
 )
-from tendon_ros.estimate.expectation import Expectation
+from tendon_ros.estimate.expectation import Expectation, Expected
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
@@ -34,8 +36,9 @@ from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.statics import Balance, Statics
 
 FloatArray = NDArray[np.float64]
-#: what a search finds: cost, force, slopes by unknowns and by measured angles
-Found = tuple[float, float, FloatArray, FloatArray]
+#: what a search finds: cost, place of force and frictions in what is expected of them, slopes by
+#: unknowns and by measured angles
+Found = tuple[float, FloatArray, FloatArray, FloatArray]
 
 #: balance of a pulley that no torque sensor sees: how exactly it must hold [N m]
 BALANCE = 1e-5
@@ -101,15 +104,19 @@ class StaticBalanceObserver(Observer):
             )
         self._fixed = [i for _, i in self._angles]
         self._free = [i for i in range(len(instrument.pulleys)) if i not in self._fixed]
-        self._sigma_angle = np.array([self._doubt(known[name]) for name, _ in self._angles])
+        doubted = [self._doubt(known[name]) for name, _ in self._angles]
+        # what a model misses of an angle stays much the same from one reading to the next
+        self._sigma_angle = np.array(
+            [self._readings.slope(name) * deviation(known[name]) for name, _ in self._angles]
+        )
         count = max(known[name].resolution for name, _ in self._angles)
         self._statics = Statics(readable(instrument, count), engine=engine)
         self._plan_rows()
         doubts = [(sensor, self._doubt(sensor)) for _, sensor in self._torques]
         least = told_if_rigid(instrument, doubts, self._operating)
-        self._expectation = Expectation(least, wander)
+        self._expectation = Expectation(least, wander, len(self._weight))
         self._rigid = Rigid(instrument, self._free)
-        angles = dict(zip(self._fixed, self._sigma_angle.tolist(), strict=True))
+        angles = dict(zip(self._fixed, doubted, strict=True))
         unsure = unsure_angles(instrument, self._rigid, angles)
         self._friction = Rubbing(self._statics, unsure)
         self._play = Play(instrument, self._free, self._statics)
@@ -152,7 +159,13 @@ class StaticBalanceObserver(Observer):
                 self._on_loops[row, k] = -self._routing[k, one.index(sensor.of)]
                 self._reading_sign[n] = -1.0
         unknowns = len(self._free) + 1
-        self._known = np.eye(unknowns) / WANDER
+        lever = self._on_pulleys @ self._operating.torque
+        #: weighted slopes by the force and by the friction of each row
+        self._by_force = self._weight[:, None] * np.column_stack([lever, np.eye(count)])
+        #: slopes of what free angles, force and frictions are expected to be
+        self._prior = np.diag(
+            np.append(np.full(len(self._free), 1.0 / WANDER), np.ones(1 + count))
+        )
         if count < unknowns:
             raise InstrumentError(
                 f'{one.name}: {unknowns} unknowns (inner angles and the force) but only '
@@ -165,10 +178,9 @@ class StaticBalanceObserver(Observer):
         self._angle = np.zeros(len(self._instrument.pulleys))
         self._friction.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
-        self._force = 0.0
         self._expectation.reset()
-        self._expected = (0.0, math.inf)
-        self._rubbing = np.zeros(len(self._on_pulleys))
+        self._unsure = np.zeros(len(self._on_pulleys))
+        self._read = np.zeros(len(self._torques))
         self._refused = 0
         self._begun = False
 
@@ -185,18 +197,24 @@ class StaticBalanceObserver(Observer):
         # feed a noisy angle back through the damping
         self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
-        foreseen = self._expectation.foreseen(gap)
-        self._expected = (self._force, foreseen)
-        force, covariance = self._solve(angle, measurement)
+        read = np.array([measurement.values[name] for name, _ in self._torques])
+        # while a pulley rests, all that a torque changes by may be taken up by its friction
+        changed = float(np.abs(read - self._read).max()) if self._begun else 0.0
+        self._read = read
+        unsure = self._unsure
+        expected = self._expectation.foreseen(gap, unsure, self._same(angle, changed, unsure))
+        found, covariance = self._solve(angle, measurement, expected)
         if moving:
             self._velocity = self._moved(angle)
             rubbed = self._statics.at(angle, self._velocity).friction
             self._statics.carry(self._angle, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
-            unsure = self._friction.doubt(self._angle, angle, gap, now - rubbed, now)
-            self._rubbing = self._on_pulleys @ unsure
-            if np.any(self._rubbing > BALANCE):  # seen only now: once more
-                force, covariance = self._solve(angle, measurement)
+            doubt = self._friction.doubt(self._angle, angle, gap, now - rubbed, now)
+            unsure = self._on_pulleys @ doubt
+            if np.any(np.maximum(unsure, self._unsure) > BALANCE):  # seen only now: once more
+                same = self._same(angle, changed, unsure)
+                expected = self._expectation.foreseen(gap, unsure, same)
+                found, covariance = self._solve(angle, measurement, expected)
         self._refused = self._refused + 1 if self._strained > REFUSED else 0
         if self._refused > IN_A_ROW:
             raise RecordingError(
@@ -204,11 +222,11 @@ class StaticBalanceObserver(Observer):
                 'or a sign may be wrong'
             )
         self._angle = angle
-        self._force = force
+        self._unsure = unsure
         self._begun = True
-        spread = self._expectation.known(float(covariance[-1, -1]), foreseen, gap)
+        spread = self._expectation.taken(found, covariance, expected, unsure, gap)
         values = {
-            self._operating.channel: force,
+            self._operating.channel: float(found[0]),
             # what does not balance is known so much less
             f'{self._operating.channel}_std': spread * self._strained,
             **estimated_angles(self._instrument, angle),
@@ -219,8 +237,17 @@ class StaticBalanceObserver(Observer):
         """Return the smoothed velocities [rad/s] if the angles now are these."""
         return np.asarray(self._drift + self._pace * (angle - self._angle))
 
-    def _solve(self, angle: FloatArray, measurement: Measurement) -> tuple[float, FloatArray]:
-        """Find free angles (in place) and force; return the force and both's covariance."""
+    def _same(self, angle: FloatArray, changed: float, unsure: FloatArray) -> FloatArray:
+        """Return how far what friction is wrong by in each balance is what it was wrong by."""
+        resting = self._on_pulleys @ self._friction.resting(self._angle, angle)
+        part = changed / np.maximum(unsure, BALANCE)
+        return np.asarray(resting * np.sqrt(np.maximum(1.0 - part**2, 0.0)))
+
+    def _solve(
+        self, angle: FloatArray, measurement: Measurement, expected: Expected
+    ) -> tuple[FloatArray, FloatArray]:
+        """Find free angles (in place), force and frictions; return these and their covariance."""
+        self._expected = expected
         begun = angle.copy()
         doubtful = DOUBTFUL**2 * len(self._weight)
 
@@ -242,26 +269,28 @@ class StaticBalanceObserver(Observer):
         if best[0] > doubtful:
             for across in self._play.corners(angle):
                 best = better(across, best, bold=True)
-        cost, force, rows, by_fixed = best
+        cost, place, rows, by_fixed = best
         orthogonal, upper = np.linalg.qr(rows)
         inverse = np.linalg.solve(upper, orthogonal.T)
-        covariance = inverse @ inverse.T
+        inverse = expected.spread @ inverse[len(self._free) :]
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
         self._strained = math.sqrt(max(1.0, cost / len(self._weight)))
-        return force, covariance + through @ through.T
+        found = expected.mean + expected.spread @ place
+        return found, inverse @ inverse.T + through @ through.T
 
     def _searched(
         self, angle: FloatArray, begun: FloatArray, measurement: Measurement, *, bold: bool = False
     ) -> Found:
         """
-        Descend from angles (in place): cost, force, slopes by unknowns and measured angles.
+        Descend from angles (in place): cost, force and frictions, slopes.
 
         Where a cable goes slack a step that only goes down ends at once; Newton's own, taken
         boldly, is over it.
         """
-        force = self._force
+        place = np.zeros(self._expected.spread.shape[1])
+        count = len(self._free)
         start = begun[self._free]
-        cost, residual, rows, by_fixed = self._weighed(angle, start, force, measurement)
+        cost, residual, rows, by_fixed = self._weighed(angle, start, place, measurement)
         for _ in range(TRIES):
             _, found, _ = dgels(rows, -residual)  # least squares; priors make every column count
             move = found[: rows.shape[1]]
@@ -269,49 +298,47 @@ class StaticBalanceObserver(Observer):
             if np.abs(move).max() < CLOSE or promised < PROMISE:
                 break
             # the curve's knee and slack make a full step overshoot: shorten it until it helps
-            part = min(1.0, 0.05 / max(float(np.abs(move[:-1]).max(initial=0.0)), 0.05))
+            part = min(1.0, 0.05 / max(float(np.abs(move[:count]).max(initial=0.0)), 0.05))
             for _ in range(12):
                 trial = angle.copy()
-                trial[self._free] += part * move[:-1]
-                after = self._weighed(trial, start, force + part * move[-1], measurement)
+                trial[self._free] += part * move[:count]
+                after = self._weighed(trial, start, place + part * move[count:], measurement)
                 if after[0] < cost or bold:
                     break
                 part *= 0.4
             else:
                 break  # no shorter step helps: this is the minimum to rounding
             angle[:] = trial
-            force += part * move[-1]
+            place = place + part * move[count:]
             cost, residual, rows, by_fixed = after
-        return cost, force, rows, by_fixed
+        return cost, place, rows, by_fixed
 
     def _weighed(
-        self, angle: FloatArray, start: FloatArray, force: float, measurement: Measurement
+        self, angle: FloatArray, start: FloatArray, place: FloatArray, measurement: Measurement
     ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
         """Return cost, residuals with the prior's, their slopes, and slopes by measured angles."""
         balance = self._statics.at(angle, self._moved(angle))
-        residual, slope, by_fixed = self._equations(balance, force, measurement)
-        prior = (angle[self._free] - start) / WANDER
-        expected, spread = self._expected
-        residual = np.concatenate([residual, prior, [(force - expected) / spread]])
-        rows = np.concatenate([slope, self._known])
-        rows[-1, -1] = 1.0 / spread
+        force, *friction = self._expected.mean + self._expected.spread @ place
+        residual, by_free, by_fixed = self._equations(balance, force, friction, measurement)
+        residual = np.concatenate([residual, (angle[self._free] - start) / WANDER, place])
+        count, unknowns = len(self._free), len(self._free) + len(place)
+        rows = np.zeros((len(residual), unknowns))
+        rows[: len(by_free), :count] = by_free
+        rows[: len(by_free), count:] = self._by_force @ self._expected.spread
+        rows[len(by_free) :] = self._prior[:unknowns, :unknowns]
         return float(residual @ residual), residual, rows, by_fixed
 
     def _equations(
-        self, balance: Balance, force: float, measurement: Measurement
+        self, balance: Balance, force: float, friction: Sequence[float], measurement: Measurement
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return weighted residuals, and their slopes by unknowns and by the measured angles."""
+        """Return weighted residuals, and their slopes by free and by measured angles."""
         stiffness = balance.stiffness + self._pace * balance.damping
         torque = balance.torque + self._operating.torque * force
         # every row is linear in the torques on pulleys and the forces of loops
         by_angle = -self._on_pulleys @ stiffness
         by_angle += self._on_loops @ (balance.loop_stiffness[:, None] * self._routing)
         read = np.array([measurement.values[name] for name, _ in self._torques])
-        residual = self._on_pulleys @ torque + self._on_loops @ balance.loop_force
+        residual = self._on_pulleys @ torque + self._on_loops @ balance.loop_force + friction
         residual[len(self._balanced) :] += self._reading_sign * read
-        slope = np.column_stack(
-            [by_angle[:, self._free], self._on_pulleys @ self._operating.torque]
-        )
-        own = 1.0 / np.hypot(1.0 / self._weight, self._rubbing)
-        weight = own[:, None]
-        return residual * own, slope * weight, by_angle[:, self._fixed] * weight
+        by_angle *= self._weight[:, None]
+        return residual * self._weight, by_angle[:, self._free], by_angle[:, self._fixed]
