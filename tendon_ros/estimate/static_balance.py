@@ -51,7 +51,7 @@ TRIES = 60
 #: deviations by which every equation may be off, and for how many measurements in a row more
 REFUSED, IN_A_ROW = 100.0, 20
 #: deviations from which on the sides of a coupling's play are tried
-DOUBTFUL = 3.0
+DOUBTFUL = 1.5
 #: velocities for the direction of friction are smoothed over this time [s]
 SMOOTHING = 0.02
 #: prior deviation of an angle about where it was carried; holds what no channel sees [rad]
