@@ -181,6 +181,8 @@ class StaticBalanceObserver(Observer):
         self._expectation.reset()
         self._unsure = np.zeros(len(self._on_pulleys))
         self._read = np.zeros(len(self._torques))
+        #: by balance, what the torques were when its pulley came to rest
+        self._rested = np.zeros((len(self._on_pulleys), len(self._torques)))
         self._refused = 0
         self._begun = False
 
@@ -198,29 +200,33 @@ class StaticBalanceObserver(Observer):
         self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
         read = np.array([measurement.values[name] for name, _ in self._torques])
-        # while a pulley rests, all that a torque changes by may be taken up by its friction
-        changed = float(np.abs(read - self._read).max()) if self._begun else 0.0
-        self._read = read
+        if not self._begun:
+            self._rested = np.tile(read, (len(self._weight), 1))
         unsure = self._unsure
-        expected = self._expectation.foreseen(gap, unsure, self._same(angle, changed, unsure))
+        expected = self._expectation.foreseen(gap, unsure, self._same(angle, read, unsure))
         found, covariance = self._solve(angle, measurement, expected)
+        before = self._angle if self._begun else angle
         if moving:
             self._velocity = self._moved(angle)
-            rubbed = self._statics.at(angle, self._velocity).friction
-            self._statics.carry(self._angle, angle, gap)
+        rubbed = now = self._statics.at(angle, self._velocity).friction
+        if moving:
+            self._statics.carry(before, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
-            doubt = self._friction.doubt(self._angle, angle, gap, now - rubbed, now)
-            unsure = self._on_pulleys @ doubt
-            if np.any(np.maximum(unsure, self._unsure) > BALANCE):  # seen only now: once more
-                same = self._same(angle, changed, unsure)
-                expected = self._expectation.foreseen(gap, unsure, same)
-                found, covariance = self._solve(angle, measurement, expected)
+        doubt = self._friction.doubt(before, angle, gap, now - rubbed, now)
+        unsure = self._on_pulleys @ doubt
+        if np.any(np.maximum(unsure, self._unsure) > BALANCE):  # seen only now: once more
+            same = self._same(angle, read, unsure)
+            expected = self._expectation.foreseen(gap, unsure, same)
+            found, covariance = self._solve(angle, measurement, expected)
         self._refused = self._refused + 1 if self._strained > REFUSED else 0
         if self._refused > IN_A_ROW:
             raise RecordingError(
                 f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
                 'or a sign may be wrong'
             )
+        resting = self._on_pulleys @ self._friction.resting(before, angle)
+        self._rested = read + resting[:, None] * (self._rested - read)
+        self._read = read
         self._angle = angle
         self._unsure = unsure
         self._begun = True
@@ -237,11 +243,16 @@ class StaticBalanceObserver(Observer):
         """Return the smoothed velocities [rad/s] if the angles now are these."""
         return np.asarray(self._drift + self._pace * (angle - self._angle))
 
-    def _same(self, angle: FloatArray, changed: float, unsure: FloatArray) -> FloatArray:
-        """Return how far what friction is wrong by in each balance is what it was wrong by."""
+    def _same(self, angle: FloatArray, read: FloatArray, unsure: FloatArray) -> FloatArray:
+        """
+        Return how far what friction is wrong by in each balance is what it was wrong by.
+
+        All that torques have changed by since a pulley rests may have been taken up by friction.
+        """
         resting = self._on_pulleys @ self._friction.resting(self._angle, angle)
-        part = changed / np.maximum(unsure, BALANCE)
-        return np.asarray(resting * np.sqrt(np.maximum(1.0 - part**2, 0.0)))
+        now, before = (np.abs(self._rested - r).max(axis=1) for r in (read, self._read))
+        grown = np.maximum(now**2 - before**2, 0.0) / np.maximum(unsure, BALANCE) ** 2
+        return np.asarray(resting * np.sqrt(np.maximum(1.0 - grown, 0.0)))
 
     def _solve(
         self, angle: FloatArray, measurement: Measurement, expected: Expected

@@ -20,6 +20,8 @@ from tendon_ros.model.trajectory_choice import chosen_trajectory
 #: rounding of the encoders, and inertia where a method leaves it out
 LIMITS = {'contact_angle': (0.25, 3e-4), 'static_balance': (0.35, 6e-4), 'dynamic': (0.35, 6e-4)}
 
+STARTED = 0.3  # [s] until what begins at rest has moved
+
 
 def taut():
     """Return a grasper whose cable is preloaded, so that it rubs and pulls either way."""
@@ -245,9 +247,11 @@ def test_a_reversal_is_not_taken_for_force(rms):
     estimate = estimated['estimate/torque']
     truth = recording['load_cell/torque'].at(estimate.time)
     off = np.abs(estimate.value - truth)
-    assert off.max() < 0.4 * np.abs(truth).max()
-    assert rms(off) < 0.15 * np.abs(truth).max()
     assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.9
+    # before it has moved nobody knows which way it rubs
+    off = off[estimate.time > recording.start + STARTED]
+    assert off.max() < 0.35 * np.abs(truth).max()
+    assert rms(off) < 0.16 * np.abs(truth).max()
 
 
 @pytest.mark.parametrize(('true', 'known'), [(3e-3, 6e-3), (6e-3, 3e-3)])
@@ -279,9 +283,13 @@ def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
     estimate = estimated['estimate/torque']
     truth = recording['load_cell/torque'].at(estimate.time)
     off = np.abs(estimate.value - truth)
-    assert off.max() < 0.5 * truth.max()
-    assert rms(off) < 0.08 * truth.max()
-    assert np.mean(off < 2.0 * estimated['estimate/torque_std'].value) > 0.95
+    covered = off < 2.0 * estimated['estimate/torque_std'].value
+    assert np.mean(covered) > 0.95
+    # before it has moved nobody knows which way it rubs, and the estimate says so
+    late = estimate.time > recording.start + STARTED
+    assert np.all(covered[~late])
+    assert off[late].max() < 0.3 * truth.max()
+    assert rms(off[late]) < 0.06 * truth.max()
 
 
 def test_a_small_torque_is_met_at_the_edge_of_a_play():
@@ -364,3 +372,33 @@ def test_a_torque_that_reverses_crosses_several_plays_at_once(monkeypatch):
     assert astray() < 0.1
     monkeypatch.setattr('tendon_ros.estimate.play.Play.corners', lambda *_: ())
     assert astray() > 0.4
+
+
+def test_a_creeping_torque_at_rest_is_no_force(rms):
+    """A torque that eases while all rests is taken up by friction as well as by the force."""
+    grasper = taut()
+    uses = (
+        EffectUse('tension_friction', 'pulley_spindle', {'coefficient': 0.5}),
+        EffectUse('presliding_friction', 'pulley_spindle', {'angle': 3e-3, 'torque': 0.0}),
+    )
+    channels = ['pulley/pulley_spindle/position', 'pulley/pulley_spindle/effort']
+    rig = replace(
+        grasper,
+        effects=uses,
+        sensors=tuple(
+            replace(s, misfit=3e-3) if s.channel in channels else s for s in grasper.sensors
+        ),
+    )
+    observer = build_observer(rig, 'static_balance', channels=channels, wander=0.01)
+    time = 0.01 * np.arange(600)
+    # two seconds of closing against a load, then a hold while the drive lets go of a third
+    angle = np.minimum(0.2 * time, 0.4)
+    torque = np.where(time < 2.0, 0.12, 0.12 - 0.01 * (time - 2.0))
+    found = [
+        observer.update(Measurement(int(1e9 * t), dict(zip(channels, (a, m), strict=True))))
+        for t, a, m in zip(time, angle, torque, strict=True)
+    ]
+    force = np.array([one.values['estimate/torque'] for one in found])
+    unsure = np.array([one.values['estimate/torque_std'] for one in found])
+    assert abs(force[-1] - force[190]) < 0.01
+    assert unsure[-1] > 2.0 * unsure[190]
