@@ -4,7 +4,7 @@ Which place is to blame for what no cause explains.
 Each place is asked what an arbitrary torque, stretch or reading error there could explain: the
 directions in which channels answer together differ from place to place, whatever the law behind
 it. Where directions are alike, the law decides after all: an error of a place is a function of
-what that place feels, its angle and direction, its torque or its force.
+what that place feels, its angle and direction, its speed, its torque or its force.
 """
 
 from __future__ import annotations
@@ -232,7 +232,10 @@ def _felt(problem: Problem, states: Sequence[Rows]) -> dict[str, FloatArray]:
 
     for i, pulley in enumerate(instrument.pulleys):
         angle, speed = [s.angle[:, i] for s in states], [s.velocity[:, i] for s in states]
-        keep(f'pulley_{pulley.name}', _levels(angle, speed))
+        # what rubs may do so by angle and direction, what drags by speed
+        by_angle, by_speed = _levels(angle, speed), _levels(speed, None)
+        both = [[*at, *fast] for at, fast in zip(by_angle, by_speed, strict=True)]
+        keep(f'pulley_{pulley.name}', both)
         keep(f'encoder_{pulley.name}', _levels(angle, None, FINE))
     names = [*(f'cable_{x.name}' for x in instrument.loops)]
     names += [f'coupling_{x.name}' for x in instrument.couplings]

@@ -99,16 +99,6 @@ class Rubbing:
         """Forget where the pulleys have come from."""
         self._late = None
 
-    def resting(self, before: FloatArray, angle: FloatArray) -> FloatArray:
-        """
-        Return how far each pulley rests: whether its friction is wrong by the same as before.
-
-        :param before: angles at the last measurement [rad], shape (pulleys,).
-        :param angle: the same now.
-        :return: from one at rest to nothing, shape (pulleys,).
-        """
-        return np.asarray(np.exp(-np.abs(angle - before) / np.maximum(self._unsure, LEAST)))
-
     def doubt(
         self,
         before: FloatArray,

@@ -27,21 +27,21 @@ from tendon_ros.estimate.channels import (
     operating_force,
     sensors_of,
 )
+from tendon_ros.estimate.equations import BALANCE, Equations
 from tendon_ros.estimate.expectation import Expectation, Expected
 from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
+from tendon_ros.estimate.rest import Rest
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
 from tendon_ros.estimate.rubbing import readable, Rubbing, unsure_angles
 from tendon_ros.model.instrument import Instrument, Sensor
-from tendon_ros.model.statics import Balance, Statics
+from tendon_ros.model.statics import Statics
 
 FloatArray = NDArray[np.float64]
 #: what a search finds: cost, place of force and frictions in what is expected of them, slopes by
 #: unknowns and by measured angles
 Found = tuple[float, FloatArray, FloatArray, FloatArray]
 
-#: balance of a pulley that no torque sensor sees: how exactly it must hold [N m]
-BALANCE = 1e-5
 #: a Newton step below this ends the search [rad, N or N m]
 CLOSE = 1e-9
 #: a step that promises to lower the weighted squares by less than this ends the search too
@@ -96,7 +96,7 @@ class StaticBalanceObserver(Observer):
             for name in channels
             if known[name].kind == 'angle'
         ]
-        self._torques = [(name, known[name]) for name in channels if known[name].kind != 'angle']
+        self._torques = [name for name in channels if known[name].kind != 'angle']
         if not self._angles or not self._torques:
             raise InstrumentError(
                 f'{instrument.name}: this method needs at least one angle and one torque; the '
@@ -109,16 +109,22 @@ class StaticBalanceObserver(Observer):
         self._sigma_angle = np.array(
             [self._readings.slope(name) * deviation(known[name]) for name, _ in self._angles]
         )
-        count = max(known[name].resolution for name, _ in self._angles)
-        self._statics = Statics(readable(instrument, count), engine=engine)
-        self._plan_rows()
-        doubts = [(sensor, self._doubt(sensor)) for _, sensor in self._torques]
+        coarsest = max(known[name].resolution for name, _ in self._angles)
+        self._statics = Statics(readable(instrument, coarsest), engine=engine)
+        doubts = [(known[name], self._doubt(known[name])) for name in self._torques]
+        self._equations = Equations(instrument, self._operating, doubts, self._free)
+        count = len(self._equations.weight)
+        #: slopes of what free angles, force and frictions are expected to be
+        self._prior = np.diag(
+            np.append(np.full(len(self._free), 1.0 / WANDER), np.ones(1 + count))
+        )
         least = told_if_rigid(instrument, doubts, self._operating)
-        self._expectation = Expectation(least, wander, len(self._weight))
+        self._expectation = Expectation(least, wander, count)
         self._rigid = Rigid(instrument, self._free)
         angles = dict(zip(self._fixed, doubted, strict=True))
         unsure = unsure_angles(instrument, self._rigid, angles)
         self._friction = Rubbing(self._statics, unsure)
+        self._rest = Rest(unsure, self._equations.on_pulleys)
         self._play = Play(instrument, self._free, self._statics)
         self._reset()
 
@@ -132,57 +138,14 @@ class StaticBalanceObserver(Observer):
         turned = {known[name].of for name in shafts}
         return shafts + [n for n, s in known.items() if s.kind == 'angle' and s.of in turned]
 
-    def _plan_rows(self) -> None:
-        """Settle which pulleys must balance, and which torque is compared with which sensor."""
-        one = self._instrument
-        motors = {m.name: one.index(m.pulley) for m in one.motors}
-        measured = {motors[s.of] for _, s in self._torques if s.kind == 'motor_torque'}
-        unknown = set(motors.values()) - measured
-        self._balanced = [
-            i for i in range(len(one.pulleys)) if i not in measured and i not in unknown
-        ]
-        rows = [row.name for row in one.links]
-        count = len(self._balanced) + len(self._torques)
-        self._routing = one.routing()
-        self._on_pulleys = np.zeros((count, len(one.pulleys)))
-        self._on_loops = np.zeros((count, len(rows)))
-        self._on_pulleys[np.arange(len(self._balanced)), self._balanced] = 1.0
-        self._weight = np.full(count, 1.0 / BALANCE)
-        self._reading_sign = np.ones(len(self._torques))
-        for n, (_, sensor) in enumerate(self._torques):
-            row = len(self._balanced) + n
-            self._weight[row] = 1.0 / self._doubt(sensor)
-            if sensor.kind == 'motor_torque':  # what the motor gives balances all the rest
-                self._on_pulleys[row, motors[sensor.of]] = 1.0
-            else:  # the sensor reads the torque that the loop or coupling puts on the pulley
-                k = rows.index(sensor.through)
-                self._on_loops[row, k] = -self._routing[k, one.index(sensor.of)]
-                self._reading_sign[n] = -1.0
-        unknowns = len(self._free) + 1
-        lever = self._on_pulleys @ self._operating.torque
-        #: weighted slopes by the force and by the friction of each row
-        self._by_force = self._weight[:, None] * np.column_stack([lever, np.eye(count)])
-        #: slopes of what free angles, force and frictions are expected to be
-        self._prior = np.diag(
-            np.append(np.full(len(self._free), 1.0 / WANDER), np.ones(1 + count))
-        )
-        if count < unknowns:
-            raise InstrumentError(
-                f'{one.name}: {unknowns} unknowns (inner angles and the force) but only '
-                f'{count} balances and torques; add a torque or '
-                'angle channel'
-            )
-
     def _reset(self) -> None:
         self._statics.reset()
         self._angle = np.zeros(len(self._instrument.pulleys))
         self._friction.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._expectation.reset()
-        self._unsure = np.zeros(len(self._on_pulleys))
-        self._read = np.zeros(len(self._torques))
-        #: by balance, what the torques were when its pulley came to rest
-        self._rested = np.zeros((len(self._on_pulleys), len(self._torques)))
+        self._unsure = np.zeros(len(self._equations.weight))
+        self._rest.reset()
         self._refused = 0
         self._begun = False
 
@@ -199,13 +162,12 @@ class StaticBalanceObserver(Observer):
         # feed a noisy angle back through the damping
         self._pace = 1.0 / (gap + SMOOTHING) if moving else 0.0
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
-        read = np.array([measurement.values[name] for name, _ in self._torques])
-        if not self._begun:
-            self._rested = np.tile(read, (len(self._weight), 1))
+        read = np.array([measurement.values[name] for name in self._torques])
+        before = self._angle if self._begun else angle.copy()
         unsure = self._unsure
-        expected = self._expectation.foreseen(gap, unsure, self._same(angle, read, unsure))
-        found, covariance = self._solve(angle, measurement, expected)
-        before = self._angle if self._begun else angle
+        same = self._rest.same(before, angle, read, unsure)
+        expected = self._expectation.foreseen(gap, unsure, same)
+        found, covariance = self._solve(angle, read, expected)
         if moving:
             self._velocity = self._moved(angle)
         rubbed = now = self._statics.at(angle, self._velocity).friction
@@ -213,20 +175,18 @@ class StaticBalanceObserver(Observer):
             self._statics.carry(before, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
         doubt = self._friction.doubt(before, angle, gap, now - rubbed, now)
-        unsure = self._on_pulleys @ doubt
+        unsure = self._equations.on_pulleys @ doubt
         if np.any(np.maximum(unsure, self._unsure) > BALANCE):  # seen only now: once more
-            same = self._same(angle, read, unsure)
+            same = self._rest.same(before, angle, read, unsure)
             expected = self._expectation.foreseen(gap, unsure, same)
-            found, covariance = self._solve(angle, measurement, expected)
+            found, covariance = self._solve(angle, read, expected)
         self._refused = self._refused + 1 if self._strained > REFUSED else 0
         if self._refused > IN_A_ROW:
             raise RecordingError(
                 f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
                 'or a sign may be wrong'
             )
-        resting = self._on_pulleys @ self._friction.resting(before, angle)
-        self._rested = read + resting[:, None] * (self._rested - read)
-        self._read = read
+        self._rest.carry(before, angle, read)
         self._angle = angle
         self._unsure = unsure
         self._begun = True
@@ -243,33 +203,22 @@ class StaticBalanceObserver(Observer):
         """Return the smoothed velocities [rad/s] if the angles now are these."""
         return np.asarray(self._drift + self._pace * (angle - self._angle))
 
-    def _same(self, angle: FloatArray, read: FloatArray, unsure: FloatArray) -> FloatArray:
-        """
-        Return how far what friction is wrong by in each balance is what it was wrong by.
-
-        All that torques have changed by since a pulley rests may have been taken up by friction.
-        """
-        resting = self._on_pulleys @ self._friction.resting(self._angle, angle)
-        now, before = (np.abs(self._rested - r).max(axis=1) for r in (read, self._read))
-        grown = np.maximum(now**2 - before**2, 0.0) / np.maximum(unsure, BALANCE) ** 2
-        return np.asarray(resting * np.sqrt(np.maximum(1.0 - grown, 0.0)))
-
     def _solve(
-        self, angle: FloatArray, measurement: Measurement, expected: Expected
+        self, angle: FloatArray, read: FloatArray, expected: Expected
     ) -> tuple[FloatArray, FloatArray]:
         """Find free angles (in place), force and frictions; return these and their covariance."""
         self._expected = expected
         begun = angle.copy()
-        doubtful = DOUBTFUL**2 * len(self._weight)
+        doubtful = DOUBTFUL**2 * len(self._equations.weight)
 
         def better(across: FloatArray, best: Found, least: float = 0.0, *, bold: bool) -> Found:
-            again = self._searched(across, begun, measurement, bold=bold)
+            again = self._searched(across, begun, read, bold=bold)
             if not again[0] < best[0] + least:
                 return best
             angle[:] = across
             return again
 
-        best = self._searched(angle, begun, measurement)
+        best = self._searched(angle, begun, read)
         if best[0] > doubtful:  # held at the edge of slack, perhaps
             best = better(angle.copy(), best, bold=True)
         # where torques change with no angle: at its edge they do
@@ -285,12 +234,12 @@ class StaticBalanceObserver(Observer):
         inverse = np.linalg.solve(upper, orthogonal.T)
         inverse = expected.spread @ inverse[len(self._free) :]
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
-        self._strained = math.sqrt(max(1.0, cost / len(self._weight)))
+        self._strained = math.sqrt(max(1.0, cost / len(self._equations.weight)))
         found = expected.mean + expected.spread @ place
         return found, inverse @ inverse.T + through @ through.T
 
     def _searched(
-        self, angle: FloatArray, begun: FloatArray, measurement: Measurement, *, bold: bool = False
+        self, angle: FloatArray, begun: FloatArray, read: FloatArray, *, bold: bool = False
     ) -> Found:
         """
         Descend from angles (in place): cost, force and frictions, slopes.
@@ -301,7 +250,7 @@ class StaticBalanceObserver(Observer):
         place = np.zeros(self._expected.spread.shape[1])
         count = len(self._free)
         start = begun[self._free]
-        cost, residual, rows, by_fixed = self._weighed(angle, start, place, measurement)
+        cost, residual, rows, by_fixed = self._weighed(angle, start, place, read)
         for _ in range(TRIES):
             _, found, _ = dgels(rows, -residual)  # least squares; priors make every column count
             move = found[: rows.shape[1]]
@@ -313,7 +262,7 @@ class StaticBalanceObserver(Observer):
             for _ in range(12):
                 trial = angle.copy()
                 trial[self._free] += part * move[:count]
-                after = self._weighed(trial, start, place + part * move[count:], measurement)
+                after = self._weighed(trial, start, place + part * move[count:], read)
                 if after[0] < cost or bold:
                     break
                 part *= 0.4
@@ -325,31 +274,16 @@ class StaticBalanceObserver(Observer):
         return cost, place, rows, by_fixed
 
     def _weighed(
-        self, angle: FloatArray, start: FloatArray, place: FloatArray, measurement: Measurement
+        self, angle: FloatArray, start: FloatArray, place: FloatArray, read: FloatArray
     ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
         """Return cost, residuals with the prior's, their slopes, and slopes by measured angles."""
         balance = self._statics.at(angle, self._moved(angle))
         force, *friction = self._expected.mean + self._expected.spread @ place
-        residual, by_free, by_fixed = self._equations(balance, force, friction, measurement)
+        residual, by_angle = self._equations.left(balance, self._pace, force, friction, read)
         residual = np.concatenate([residual, (angle[self._free] - start) / WANDER, place])
-        count, unknowns = len(self._free), len(self._free) + len(place)
-        rows = np.zeros((len(residual), unknowns))
-        rows[: len(by_free), :count] = by_free
-        rows[: len(by_free), count:] = self._by_force @ self._expected.spread
-        rows[len(by_free) :] = self._prior[:unknowns, :unknowns]
-        return float(residual @ residual), residual, rows, by_fixed
-
-    def _equations(
-        self, balance: Balance, force: float, friction: Sequence[float], measurement: Measurement
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return weighted residuals, and their slopes by free and by measured angles."""
-        stiffness = balance.stiffness + self._pace * balance.damping
-        torque = balance.torque + self._operating.torque * force
-        # every row is linear in the torques on pulleys and the forces of loops
-        by_angle = -self._on_pulleys @ stiffness
-        by_angle += self._on_loops @ (balance.loop_stiffness[:, None] * self._routing)
-        read = np.array([measurement.values[name] for name, _ in self._torques])
-        residual = self._on_pulleys @ torque + self._on_loops @ balance.loop_force + friction
-        residual[len(self._balanced) :] += self._reading_sign * read
-        by_angle *= self._weight[:, None]
-        return residual * self._weight, by_angle[:, self._free], by_angle[:, self._fixed]
+        count, equations = len(self._free), len(by_angle)
+        rows = np.zeros((len(residual), count + len(place)))
+        rows[:equations, :count] = by_angle[:, self._free]
+        rows[:equations, count:] = self._equations.by_force @ self._expected.spread
+        rows[equations:] = self._prior[: rows.shape[1], : rows.shape[1]]
+        return float(residual @ residual), residual, rows, by_angle[:, self._fixed]

@@ -1,9 +1,13 @@
 """The place of an error that no cause explains: found by directions, and by what a place feels."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose.places import Places
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.fixture(scope='module')
@@ -55,3 +59,23 @@ def test_what_places_take_adds_up_to_no_more_than_there_is(bench, measured_on):
     taken = [float(one.power.sum()) for one in Places(problem, fit).shares()]
     assert 0.0 < sum(taken) <= fit.cost
     assert taken == sorted(taken, reverse=True)
+
+
+def test_what_drags_by_speed_lies_at_the_pulley(measured_on):
+    # as the square of the speed: a fan, or what stirs oil
+    axis = load_instrument('driven_axis')
+    [motor] = axis.motors
+    settings = {'duration': '12 s', 'amplitude': '40 deg'}
+    run = measured_on(axis, settings=tuple(settings.items()))
+    effort, position = (
+        f'actuator/pulley_{motor.pulley}/{quantity}' for quantity in ('effort', 'position')
+    )
+    channel = run[effort]
+    step = 0.02
+    ahead, behind = (run[position].at(channel.time + lag) for lag in (step, -step))
+    speed = (ahead - behind) / (2.0 * step)
+    dragged = replace(channel, value=channel.value + 0.05 * speed * np.abs(speed))
+    run = replace(run, channels={**run.channels, effort: dragged})
+    problem = prepared([run], axis).problem
+    first = Places(problem, problem.fitted(problem.empty)).shares()[0]
+    assert first.place == f'pulley_{motor.pulley}'
