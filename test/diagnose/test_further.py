@@ -1,11 +1,15 @@
 """Further causes of a machine are those that foretell what no fit has seen."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
-from tendon_ros.diagnose.further import foretells, further, saved
+from tendon_ros.diagnose.further import foretells, further, saved, SOME
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.worth import LEAST
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -57,3 +61,36 @@ def test_what_foretells_joins_and_nothing_else(ready, rubs):
 
 def test_nothing_is_looked_for_once_it_is_late(ready, rubs):
     assert further(steps_of(ready, 0.0), rubs, ready.held, 10) is rubs
+
+
+def test_what_held_out_blocks_judge_may_be_small(measured_on):
+    body = load_instrument('single_body')
+    effort = next(s.channel for s in body.sensors if s.kind == 'motor_torque')
+
+    def prepared_with(bias):
+        runs = []
+        for seed in (1, 2):
+            run = measured_on(
+                body,
+                ('coulomb_friction', 'pulley_body', {'torque': 0.2}),
+                settings=(('duration', '30 s'), ('amplitude', '5 deg')),
+                seed=seed,
+                name=f'run{seed}',
+            )
+            read = replace(run[effort], value=run[effort].value + bias)
+            runs.append(replace(run, channels={**run.channels, effort: read}))
+        return prepared(runs, body)
+
+    noise = min(
+        float(np.median(m.doubt))
+        for m in prepared_with(0.0).problem.rollouts.segments[0].measured
+        if m.sensor.channel == effort
+    )
+    ready = prepared_with(0.2 * noise)
+    problem = ready.problem
+    state = problem.fitted(problem.empty.joined(FRICTION, {'torque': 0.2}))
+    steps = Steps(problem, [BIAS], 1, lambda *_: None, Patience())
+    grown = further(steps, state, ready.held, 10)
+    gain = (state.cost - grown.cost) / len(state.left)
+    assert SOME < gain < LEAST
+    assert BIAS in grown.model.causes
