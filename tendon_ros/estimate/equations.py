@@ -22,9 +22,9 @@ class Equations:
     """
     The paper's (1)-(6) without inertia, on every pulley whose torques are known.
 
-    ``on_pulleys``: shape (rows, pulleys), which pulley's torques each row adds up; ``weight``:
-    one by how exactly each row must hold [1/(N m)], shape (rows,); ``by_force``: weighted slopes
-    by the operating force and by a friction in each row, shape (rows, 1 + rows).
+    ``on_pulleys``: shape (rows, pulleys), which pulley's torques each row adds up; ``doubt``: how
+    exactly each row must hold [N m], shape (rows,); ``by_force``: slopes by the operating force
+    and by a friction in each row, shape (rows, 1 + rows).
 
     :param instrument: the network.
     :param operating: the operating force.
@@ -53,10 +53,10 @@ class Equations:
         self._reading_sign = np.ones(len(torques))
         self.on_pulleys = np.zeros((count, len(pulleys)))
         self.on_pulleys[np.arange(len(balanced)), balanced] = 1.0
-        self.weight = np.full(count, 1.0 / BALANCE)
+        self.doubt = np.full(count, BALANCE)
         for n, (sensor, doubt) in enumerate(torques):
             row = self._first + n
-            self.weight[row] = 1.0 / doubt
+            self.doubt[row] = doubt
             if sensor.kind == 'motor_torque':  # what the motor gives balances all the rest
                 self.on_pulleys[row, motors[sensor.of]] = 1.0
             else:  # the sensor reads the torque that the loop or coupling puts on the pulley
@@ -64,7 +64,7 @@ class Equations:
                 self._on_loops[row, k] = -self._routing[k, instrument.index(sensor.of)]
                 self._reading_sign[n] = -1.0
         lever = self.on_pulleys @ operating.torque
-        self.by_force = self.weight[:, None] * np.column_stack([lever, np.eye(count)])
+        self.by_force = np.column_stack([lever, np.eye(count)])
         unknowns = len(free) + 1
         if count < unknowns:
             raise InstrumentError(
@@ -81,14 +81,14 @@ class Equations:
         read: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """
-        Return what does not balance, and its slopes by all angles, both by weight.
+        Return what does not balance, and its slopes by all angles.
 
         :param balance: torques at some angles and velocities.
         :param pace: how velocities change with angles [1/s].
         :param force: the operating force [N or N m].
         :param friction: in each row beside the model's [N m].
         :param read: torques that were measured [N m], shape (torques,).
-        :return: shapes (rows,) and (rows, pulleys).
+        :return: [N m] and [N m/rad], shapes (rows,) and (rows, pulleys).
         """
         stiffness = balance.stiffness + pace * balance.damping
         torque = balance.torque + self._operating.torque * force
@@ -97,4 +97,4 @@ class Equations:
         by_angle += self._on_loops @ (balance.loop_stiffness[:, None] * self._routing)
         residual = self.on_pulleys @ torque + self._on_loops @ balance.loop_force + friction
         residual[self._first :] += self._reading_sign * read
-        return residual * self.weight, by_angle * self.weight[:, None]
+        return residual, by_angle

@@ -83,7 +83,7 @@ class Expectation:
         covariance = kept[:, None] * self._covariance * kept
         covariance[1:, 1:] += np.diag(np.maximum(unsure**2 - (kept[1:] * self._unsure) ** 2, 0.0))
         if self._wander is None:
-            covariance[0, 0] += (self._best * gap / STEADY) ** 2
+            covariance[0, 0] += min(self._best * gap / STEADY, ANYWHERE) ** 2
         else:
             covariance[0, 0] += self._wander**2 * gap
             # measurements that share what the model gets wrong count as one
@@ -105,7 +105,8 @@ class Expectation:
         :return: [N or N m].
         """
         variance = max(float(covariance[0, 0]), 1e-300)
-        alone = 1.0 / max(1.0 / variance - expected.force**-2, 1e-300)
+        # of a force that no torque feels nothing is ever known
+        alone = 1.0 / max(1.0 / variance - expected.force**-2, 1.0 / ANYWHERE**2)
         self._best = max(self._least, min(self._best, math.sqrt(alone)))
         # what a model gets wrong does not average out
         spread = max(math.sqrt(variance), self._best)

@@ -14,6 +14,7 @@ expected to be (:mod:`.expectation`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -104,7 +105,6 @@ class StaticBalanceObserver(Observer):
             )
         self._fixed = [i for _, i in self._angles]
         self._free = [i for i in range(len(instrument.pulleys)) if i not in self._fixed]
-        doubted = [self._doubt(known[name]) for name, _ in self._angles]
         # what a model misses of an angle stays much the same from one reading to the next
         self._sigma_angle = np.array(
             [self._readings.slope(name) * deviation(known[name]) for name, _ in self._angles]
@@ -113,7 +113,7 @@ class StaticBalanceObserver(Observer):
         self._statics = Statics(readable(instrument, coarsest), engine=engine)
         doubts = [(known[name], self._doubt(known[name])) for name in self._torques]
         self._equations = Equations(instrument, self._operating, doubts, self._free)
-        count = len(self._equations.weight)
+        count = len(self._equations.doubt)
         #: slopes of what free angles, force and frictions are expected to be
         self._prior = np.diag(
             np.append(np.full(len(self._free), 1.0 / WANDER), np.ones(1 + count))
@@ -121,8 +121,13 @@ class StaticBalanceObserver(Observer):
         least = told_if_rigid(instrument, doubts, self._operating)
         self._expectation = Expectation(least, wander, count)
         self._rigid = Rigid(instrument, self._free)
-        angles = dict(zip(self._fixed, doubted, strict=True))
-        unsure = unsure_angles(instrument, self._rigid, angles)
+        noisy = dict(zip(self._fixed, self._sigma_angle.tolist(), strict=True))
+        sound = replace(
+            instrument, sensors=tuple(replace(s, misfit=0.0) for s in instrument.sensors)
+        )
+        self._trembling = Rubbing(self._statics, unsure_angles(sound, self._rigid, noisy))
+        missed = {i: self._doubt(known[name]) for name, i in self._angles}
+        unsure = unsure_angles(instrument, self._rigid, missed)
         self._friction = Rubbing(self._statics, unsure)
         self._rest = Rest(unsure, self._equations.on_pulleys)
         self._play = Play(instrument, self._free, self._statics)
@@ -142,9 +147,11 @@ class StaticBalanceObserver(Observer):
         self._statics.reset()
         self._angle = np.zeros(len(self._instrument.pulleys))
         self._friction.reset()
+        self._trembling.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._expectation.reset()
-        self._unsure = np.zeros(len(self._equations.weight))
+        self._unsure = np.zeros(len(self._equations.doubt))
+        self._exact = self._equations.doubt
         self._rest.reset()
         self._refused = 0
         self._begun = False
@@ -174,9 +181,15 @@ class StaticBalanceObserver(Observer):
         if moving:
             self._statics.carry(before, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
-        doubt = self._friction.doubt(before, angle, gap, now - rubbed, now)
-        unsure = self._equations.on_pulleys @ doubt
-        if np.any(np.maximum(unsure, self._unsure) > BALANCE):  # seen only now: once more
+        doubt, trembles = (
+            self._equations.on_pulleys @ rubbing.doubt(before, angle, gap, now - rubbed, now)
+            for rubbing in (self._friction, self._trembling)
+        )
+        # what the model misses of angles leaves friction wrong by the same for as long as a pulley
+        # rests, what noise makes of them by another each time
+        unsure = np.sqrt(np.maximum(doubt**2 - trembles**2, 0.0))
+        self._exact = np.hypot(self._equations.doubt, trembles)
+        if np.any(np.maximum(doubt, self._unsure) > BALANCE):  # seen only now: once more
             same = self._rest.same(before, angle, read, unsure)
             expected = self._expectation.foreseen(gap, unsure, same)
             found, covariance = self._solve(angle, read, expected)
@@ -209,7 +222,7 @@ class StaticBalanceObserver(Observer):
         """Find free angles (in place), force and frictions; return these and their covariance."""
         self._expected = expected
         begun = angle.copy()
-        doubtful = DOUBTFUL**2 * len(self._equations.weight)
+        doubtful = DOUBTFUL**2 * len(self._exact)
 
         def better(across: FloatArray, best: Found, least: float = 0.0, *, bold: bool) -> Found:
             again = self._searched(across, begun, read, bold=bold)
@@ -234,7 +247,7 @@ class StaticBalanceObserver(Observer):
         inverse = np.linalg.solve(upper, orthogonal.T)
         inverse = expected.spread @ inverse[len(self._free) :]
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
-        self._strained = math.sqrt(max(1.0, cost / len(self._equations.weight)))
+        self._strained = math.sqrt(max(1.0, cost / len(self._exact)))
         found = expected.mean + expected.spread @ place
         return found, inverse @ inverse.T + through @ through.T
 
@@ -280,10 +293,14 @@ class StaticBalanceObserver(Observer):
         balance = self._statics.at(angle, self._moved(angle))
         force, *friction = self._expected.mean + self._expected.spread @ place
         residual, by_angle = self._equations.left(balance, self._pace, force, friction, read)
-        residual = np.concatenate([residual, (angle[self._free] - start) / WANDER, place])
+        weight = 1.0 / self._exact[:, None]
+        by_angle = by_angle * weight
+        residual = np.concatenate(
+            [residual / self._exact, (angle[self._free] - start) / WANDER, place]
+        )
         count, equations = len(self._free), len(by_angle)
         rows = np.zeros((len(residual), count + len(place)))
         rows[:equations, :count] = by_angle[:, self._free]
-        rows[:equations, count:] = self._equations.by_force @ self._expected.spread
+        rows[:equations, count:] = weight * self._equations.by_force @ self._expected.spread
         rows[equations:] = self._prior[: rows.shape[1], : rows.shape[1]]
         return float(residual @ residual), residual, rows, by_angle[:, self._fixed]
