@@ -68,7 +68,8 @@ class Moved:
     A number of the instrument file that moved within its tolerance: factor or addition.
 
     ``guessed``: the file says that it is no more than a guess. ``off``: by how many deviations of
-    its tolerance it has moved; of a guess none.
+    its tolerance it has moved; of a guess none. ``supposed``: the file does not say how well it
+    knows the number, and the tolerance is the usual one.
     """
 
     place: str
@@ -78,6 +79,7 @@ class Moved:
     unit: str
     guessed: bool = False
     off: float = 0.0
+    supposed: bool = False
 
     @property
     def strained(self) -> bool:

@@ -144,6 +144,7 @@ def moved(problem: Problem, final: Fit, others: Sequence[Fit]) -> tuple[Moved, .
             t.axis.unit,
             t.guessed,
             0.0 if t.guessed else abs(z),
+            t.supposed,
         )
         for t, z, interval, still in zip(
             problem.tolerances, final.model.moved, intervals, owned, strict=True

@@ -13,6 +13,7 @@ from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -172,8 +173,11 @@ def strained(problem: Problem, model: Model) -> dict[tuple[str, str], float]:
     :param model: the fitted model.
     :return: deviations of the tolerance, by the effect and place that move the number.
     """
-    return {
-        (t.effect, t.place): abs(z)
-        for t, z in problem.moved(model)
-        if not t.guessed and abs(z) > STRAINED
-    }
+    found: dict[tuple[str, str], float] = {}
+    for t, z in problem.moved(model):
+        # what only a guess opens is no part of a cause
+        [parameter] = [p for p in find(t.effect).parameters if p.name == t.parameter]
+        if t.guessed or parameter.search == 'guess' or abs(z) <= STRAINED:
+            continue
+        found[t.effect, t.place] = max(abs(z), found.get((t.effect, t.place), 0.0))
+    return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+import math
 
 from tendon_ros.diagnose.gap import beyond_noise
 from tendon_ros.diagnose.result import ChannelGap
@@ -84,6 +85,16 @@ def patched(
     ]
     bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
+    undamped = {
+        f'{place}.damping'
+        for place, damping in (
+            *((f'pulley_{p.name}', p.damping) for p in pulleys),
+            *((f'coupling_{c.name}', c.damping) for c in couplings),
+            *((f'cable_{loop.name}', loop.damping) for loop in loops),
+            *((contact_place(instrument, c), c.damping) for c in contacts),
+        )
+        if damping == 0.0
+    }
     return replace(
         instrument,
         pulleys=pulleys,
@@ -92,6 +103,12 @@ def patched(
         curves=tuple(c for name, c in curves.items() if name in used),
         contacts=tuple(contacts),
         effects=in_force(instrument.effects, [*known, *accepted, *bent]),
+        # a share of nothing is no tolerance, and no file may state one
+        tolerances={
+            name: spread
+            for name, spread in instrument.tolerances.items()
+            if name not in undamped or math.isinf(spread)
+        },
     )
 
 

@@ -120,6 +120,7 @@ class StaticBalanceObserver(Observer):
         )
         least = told_if_rigid(instrument, doubts, self._operating)
         self._expectation = Expectation(least, wander, count)
+        self._narrow = '' if wander is None else f', or the force wanders by more than {wander:g}'
         self._rigid = Rigid(instrument, self._free)
         noisy = dict(zip(self._fixed, self._sigma_angle.tolist(), strict=True))
         sound = replace(
@@ -197,7 +198,7 @@ class StaticBalanceObserver(Observer):
         if self._refused > IN_A_ROW:
             raise RecordingError(
                 f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
-                'or a sign may be wrong'
+                f'or a sign may be wrong{self._narrow}'
             )
         self._rest.carry(before, angle, read)
         self._angle = angle

@@ -240,7 +240,8 @@ def _addition(
     """Return the axis of what is added to a number; None where nothing may be."""
     if math.isinf(spread):
         scale = max(0.5 * nominal, some)
-        return Axis(quantity, unit, max(least, -1e3), 1e3, 0.0, scale, spread=10.0)
+        reach = max(1e3, 10.0 * scale)
+        return Axis(quantity, unit, max(least, -reach), reach, 0.0, scale, spread=10.0)
     scale = spread * nominal
     if scale <= 0.0:
         return None

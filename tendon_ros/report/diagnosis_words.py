@@ -158,7 +158,8 @@ def known_words(moved: Moved) -> str:
     """
     if moved.guessed:
         return ', a guess'
-    return f', {number(moved.off, 2)} deviations off' if moved.strained else ''
+    usual = 'usual ' if moved.supposed else ''
+    return f', {number(moved.off, 2)} {usual}deviations off' if moved.strained else ''
 
 
 def sized(value: float, ci95: tuple[float, float], unit: str) -> str:

@@ -39,8 +39,19 @@ def test_a_candidate_whose_number_has_moved_far_may_hide_in_it():
 
 def test_only_what_was_measured_is_strained():
     known, guess, near = (
-        SimpleNamespace(effect=name, place='pulley_body', guessed=name == 'gravity')
-        for name in ('inertia', 'gravity', 'viscous_friction')
+        SimpleNamespace(
+            effect=name, place='pulley_body', guessed=name == 'gravity', parameter=parameter
+        )
+        for name, parameter in (
+            ('inertia', 'scale'),
+            ('gravity', 'torque'),
+            ('viscous_friction', 'damping'),
+        )
     )
-    problem = SimpleNamespace(moved=lambda _: [(known, -2.5), (guess, 9.0), (near, 1.5)])
+    # which a cause cannot be
+    wall = SimpleNamespace(
+        effect='contact_stiffness', place='contact', guessed=False, parameter='damping'
+    )
+    moved = [(known, -2.5), (guess, 9.0), (near, 1.5), (wall, 3.0), (known, 2.2)]
+    problem = SimpleNamespace(moved=lambda _: moved)
     assert strained(problem, None) == {('inertia', 'pulley_body'): 2.5}

@@ -3,11 +3,13 @@
 from dataclasses import replace
 import math
 
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import everyone
+from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument_file import load_instrument, save_instrument
 
 
@@ -53,3 +55,22 @@ def test_the_damping_of_a_wall_is_found_where_the_file_says_nothing(bench, measu
     save_instrument(guess, tmp_path / 'guess.yaml')
     assert 'guessed' in (tmp_path / 'guess.yaml').read_text()
     assert load_instrument(tmp_path / 'guess.yaml') == guess
+
+
+def test_a_tolerance_of_what_became_nothing_is_left_out(problem, bench, tmp_path):
+    known = replace(bench, tolerances={'pulley_1.damping': 0.5, 'pulley_2.damping': math.inf})
+    wide = problem.toleranced(tolerances(known))
+    damping = known.pulleys[known.index('1')].damping
+    [at] = [
+        n
+        for n, t in enumerate(wide.tolerances)
+        if (t.place, t.quantity) == ('pulley_1', 'damping')
+    ]
+    moved = np.zeros(len(wide.tolerances))
+    moved[at] = -damping / wide.tolerances[at].axis.scale
+    model = replace(wide.empty, moved=moved)
+    found = patched(wide, model, known)
+    assert found.pulleys[found.index('1')].damping == 0.0
+    assert found.tolerances == {'pulley_2.damping': math.inf}
+    save_instrument(found, tmp_path / 'found.yaml')
+    assert load_instrument(tmp_path / 'found.yaml') == found

@@ -78,3 +78,8 @@ def test_what_the_tip_met_is_rarely_measured(bench):
     guess = by_name(replace(bench, tolerances={'contact.damping': math.inf}))['contact.damping']
     assert guess.guessed
     assert guess.axis.value(-1e9) == -contact.damping
+    # a guess is never narrower than silence
+    hard = replace(contact, damping=0.0, stiffness=1e7)
+    unknown = replace(bench, contacts=(hard,), tolerances={'contact.damping': math.inf})
+    quiet = by_name(replace(bench, contacts=(hard,)))['contact.damping'].axis
+    assert by_name(unknown)['contact.damping'].axis.high >= quiet.high

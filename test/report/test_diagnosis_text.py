@@ -172,6 +172,8 @@ def test_what_was_measured_and_has_moved_far_is_told_first(case):
     told = summary(diagnosis, [replace(inertia, guessed=True), replace(preload, off=2.7)])
     assert 'file    pretension of cable 12 × 0.994 (0.981 … 1.007), 2.7 deviations off' in told
     assert 'deviations off' not in summary(diagnosis, [replace(preload, off=1.9)])
+    usual = summary(diagnosis, [replace(preload, off=3.0, supposed=True)])
+    assert '3.0 usual deviations off' in usual
 
 
 def test_friction_of_each_direction_is_said_as_two_effects_too(case):
