@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,6 +77,21 @@ def sensors_of(instrument: Instrument, kinds: tuple[str, ...]) -> Mapping[str, S
     :return: sensors by channel.
     """
     return {s.channel: s for s in instrument.sensors if s.kind in kinds}
+
+
+def usual_channels(known: Mapping[str, Sensor]) -> Sequence[str]:
+    """
+    Return the channels that a balance of torques takes where none are chosen.
+
+    :param known: sensors of angles and torques, by channel.
+    :return: the motors' own, or where they tell no torque those of the shafts.
+    """
+    motors = [name for name in known if name.startswith('actuator/')]
+    if any(known[name].kind == 'motor_torque' for name in motors):
+        return motors
+    shafts = [name for name, s in known.items() if s.kind == 'loop_torque']
+    turned = {known[name].of for name in shafts}
+    return shafts + [n for n, s in known.items() if s.kind == 'angle' and s.of in turned]
 
 
 def deviation(sensor: Sensor) -> float:

@@ -13,7 +13,7 @@ expected to be (:mod:`.expectation`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 import math
 
@@ -27,6 +27,7 @@ from tendon_ros.estimate.channels import (
     estimated_angles,
     operating_force,
     sensors_of,
+    usual_channels,
 )
 from tendon_ros.estimate.equations import BALANCE, Equations
 from tendon_ros.estimate.expectation import Expectation, Expected
@@ -35,7 +36,7 @@ from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rest import Rest
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
 from tendon_ros.estimate.rubbing import readable, Rubbing, unsure_angles
-from tendon_ros.model.instrument import Instrument, Sensor
+from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.statics import Statics
 
 FloatArray = NDArray[np.float64]
@@ -85,7 +86,7 @@ class StaticBalanceObserver(Observer):
         self._operating = operating_force(instrument)
         known = sensors_of(instrument, ('angle', 'motor_torque', 'loop_torque'))
         if channels is None:
-            channels = self._usual(known)
+            channels = usual_channels(known)
         for name in channels:
             if name not in known:
                 raise InstrumentError(
@@ -133,16 +134,6 @@ class StaticBalanceObserver(Observer):
         self._rest = Rest(unsure, self._equations.on_pulleys)
         self._play = Play(instrument, self._free, self._statics)
         self._reset()
-
-    @staticmethod
-    def _usual(known: Mapping[str, Sensor]) -> Sequence[str]:
-        """Return the motors' own channels, or where they tell no torque those of the shafts."""
-        motors = [name for name in known if name.startswith('actuator/')]
-        if any(known[name].kind == 'motor_torque' for name in motors):
-            return motors
-        shafts = [name for name, s in known.items() if s.kind == 'loop_torque']
-        turned = {known[name].of for name in shafts}
-        return shafts + [n for n, s in known.items() if s.kind == 'angle' and s.of in turned]
 
     def _reset(self) -> None:
         self._statics.reset()
