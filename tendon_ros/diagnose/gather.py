@@ -206,13 +206,13 @@ def pushed_words(ready: Prepared) -> list[str]:
     rollouts = ready.whole.rollouts
     known = {d.pulley for d in drives(rollouts.instrument) if d.by_torque}
     pushed = [s.name for s in rollouts.segments if not known.issuperset(s.pushed)]
-    walls = listed(c.name for c in rollouts.instrument.contacts if c.enabled)
-    if not pushed or walls == 'none':
+    walls = [c.name for c in rollouts.instrument.contacts if c.enabled]
+    if not pushed or not walls:
         return []
     return [
-        f'no wall of the file ({walls}) fits what was met in {listed(pushed)}: there the measured '
-        'load pushes the model and is no longer compared; correct position and stiffness of the '
-        'wall where there is one'
+        f'no wall of the file ({listed(walls)}) fits what was met in {listed(pushed)}: there the '
+        'measured load pushes the model and is no longer compared; correct position and stiffness '
+        'of the wall where there is one'
     ]
 
 

@@ -13,7 +13,6 @@ from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
-from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -175,9 +174,8 @@ def strained(problem: Problem, model: Model) -> dict[tuple[str, str], float]:
     """
     found: dict[tuple[str, str], float] = {}
     for t, z in problem.moved(model):
-        # what only a guess opens is no part of a cause
-        [parameter] = [p for p in find(t.effect).parameters if p.name == t.parameter]
-        if t.guessed or parameter.search == 'guess' or abs(z) <= STRAINED:
-            continue
-        found[t.effect, t.place] = max(abs(z), found.get((t.effect, t.place), 0.0))
-    return found
+        cause = Candidate(t.effect, t.place)
+        # what only a guess opens is no part of it
+        if not t.guessed and any(p.name == t.parameter for p in cause.parameters):
+            found[t.effect, t.place] = max(abs(z), found.get((t.effect, t.place), STRAINED))
+    return {key: off for key, off in found.items() if off > STRAINED}

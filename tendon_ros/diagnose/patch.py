@@ -36,11 +36,18 @@ def patched(
     ]
     # what an effect of the file says already, that effect says anew
     moved = {(t.place, t.quantity): t.axis.value(z) for t, z in far if not t.given}
+    undamped: set[str] = set()
+
+    def damped(place: str, damping: float) -> float:
+        left = max(0.0, damping + moved.get((place, 'damping'), 0.0))
+        undamped.update([f'{place}.damping'] if left == 0.0 else [])
+        return left
+
     pulleys = tuple(
         replace(
             p,
             inertia=p.inertia * moved.get((f'pulley_{p.name}', 'inertia'), 1.0),
-            damping=max(0.0, p.damping + moved.get((f'pulley_{p.name}', 'damping'), 0.0)),
+            damping=damped(f'pulley_{p.name}', p.damping),
         )
         for p in instrument.pulleys
     )
@@ -48,7 +55,7 @@ def patched(
         replace(
             c,
             stiffness=c.stiffness * moved.get((f'coupling_{c.name}', 'stiffness'), 1.0),
-            damping=max(0.0, c.damping + moved.get((f'coupling_{c.name}', 'damping'), 0.0)),
+            damping=damped(f'coupling_{c.name}', c.damping),
         )
         for c in instrument.couplings
     )
@@ -65,7 +72,7 @@ def patched(
             curves[own] = Curve(own, old.elongation, tuple(scale * t for t in old.tension))
         tight = loop.pretension * moved.get((place, 'pretension'), 1.0)
         curves[own] = _reaching(curves[own], tight)
-        damping = max(0.0, loop.damping + moved.get((place, 'damping'), 0.0))
+        damping = damped(place, loop.damping)
         loops.append(replace(loop, curve=own, pretension=tight, damping=damping))
     contacts = []
     for c in instrument.contacts:
@@ -74,7 +81,7 @@ def patched(
             replace(
                 c,
                 stiffness=c.stiffness * moved.get((place, 'stiffness'), 1.0),
-                damping=max(0.0, c.damping + moved.get((place, 'damping'), 0.0)),
+                damping=damped(place, c.damping),
                 position=c.position + moved.get((place, 'position'), 0.0),
             )
         )
@@ -85,16 +92,6 @@ def patched(
     ]
     bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
-    undamped = {
-        f'{place}.damping'
-        for place, damping in (
-            *((f'pulley_{p.name}', p.damping) for p in pulleys),
-            *((f'coupling_{c.name}', c.damping) for c in couplings),
-            *((f'cable_{loop.name}', loop.damping) for loop in loops),
-            *((contact_place(instrument, c), c.damping) for c in contacts),
-        )
-        if damping == 0.0
-    }
     return replace(
         instrument,
         pulleys=pulleys,

@@ -127,10 +127,12 @@ class StaticBalanceObserver(Observer):
         sound = replace(
             instrument, sensors=tuple(replace(s, misfit=0.0) for s in instrument.sensors)
         )
-        self._trembling = Rubbing(self._statics, unsure_angles(sound, self._rigid, noisy))
+        trembling = unsure_angles(sound, self._rigid, noisy)
         missed = {i: self._doubt(known[name]) for name, i in self._angles}
         unsure = unsure_angles(instrument, self._rigid, missed)
-        self._friction = Rubbing(self._statics, unsure)
+        # by noise, and by all where a diagnosis left more than that
+        levels = [trembling, unsure][: 1 + bool(np.any(unsure > trembling))]
+        self._frictions = [Rubbing(self._statics, level) for level in levels]
         self._rest = Rest(unsure, self._equations.on_pulleys)
         self._play = Play(instrument, self._free, self._statics)
         self._reset()
@@ -138,8 +140,8 @@ class StaticBalanceObserver(Observer):
     def _reset(self) -> None:
         self._statics.reset()
         self._angle = np.zeros(len(self._instrument.pulleys))
-        self._friction.reset()
-        self._trembling.reset()
+        for friction in self._frictions:
+            friction.reset()
         self._velocity = np.zeros(len(self._instrument.pulleys))
         self._expectation.reset()
         self._unsure = np.zeros(len(self._equations.doubt))
@@ -173,10 +175,8 @@ class StaticBalanceObserver(Observer):
         if moving:
             self._statics.carry(before, angle, gap)
             now = self._statics.at(angle, self._velocity).friction
-        doubt, trembles = (
-            self._equations.on_pulleys @ rubbing.doubt(before, angle, gap, now - rubbed, now)
-            for rubbing in (self._friction, self._trembling)
-        )
+        doubts = [f.doubt(before, angle, gap, now - rubbed, now) for f in self._frictions]
+        trembles, doubt = (self._equations.on_pulleys @ doubts[k] for k in (0, -1))
         # what the model misses of angles leaves friction wrong by the same for as long as a pulley
         # rests, what noise makes of them by another each time
         unsure = np.sqrt(np.maximum(doubt**2 - trembles**2, 0.0))

@@ -17,7 +17,13 @@ from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.effect_use import units_at
-from tendon_ros.model.instrument import Contact, contact_place, EffectUse, Instrument
+from tendon_ros.model.instrument import (
+    Contact,
+    contact_place,
+    DAMPING_UNITS,
+    EffectUse,
+    Instrument,
+)
 
 # what a careful nameplate, scale or spring balance leaves open, relative, one deviation
 MEASURED = 0.02
@@ -165,9 +171,8 @@ def _yielding(contact: Contact, spread: float | None) -> Axis | None:
     What the tip meets is rarely measured: where the file says nothing of its damping, there is
     some.
     """
-    by_spring = contact.law == 'spring_damper'
-    unit = 'N s/m' if by_spring else 's/m'
-    some = YIELDING * contact.stiffness if by_spring else SOME_LOSS
+    unit = DAMPING_UNITS[contact.law]
+    some = SOME_LOSS if contact.law == 'hunt_crossley' else YIELDING * contact.stiffness
     if spread is None and contact.damping == 0.0:
         return Axis('damping', unit, 0.0, REACH * some, 0.0, some, spread=1.0)
     return _addition('damping', unit, contact.damping, spread or 0.0, some, -contact.damping)

@@ -121,6 +121,10 @@ class Motor:
         return min(self.torque_limit, (self.controller or Controller()).limit)
 
 
+#: unit of a contact's damping, by its law
+DAMPING_UNITS = {'hunt_crossley': 's/m', 'spring_damper': 'N*s/m'}
+
+
 @dataclass(frozen=True)
 class Contact:
     """

@@ -8,6 +8,7 @@ from dataclasses import replace
 import math
 
 from tendon_ros.base.errors import EffectError, InstrumentError
+from tendon_ros.base.quantity import parsed
 from tendon_ros.base.recording import channel_name
 from tendon_ros.model.effect_use import checked_use, units_at
 from tendon_ros.model.instrument import (
@@ -35,9 +36,6 @@ from tendon_ros.model.instrument_schema import (
     Section,
 )
 from tendon_ros.model.tolerance import GUESSED, read_stated, Stated, without_tolerance
-
-#: unit of a contact's damping, by its law
-DAMPING_UNITS = {'hunt_crossley': 's/m', 'spring_damper': 'N*s/m'}
 
 
 def built(file: InstrumentSection) -> Instrument:
@@ -152,34 +150,11 @@ def _contact(name: str, section: ContactSection) -> Contact:
         route=dict(section.route),
         arm=section.arm,
         stiffness=section.stiffness.value,
-        damping=_damping(name, section).value,
+        damping=section.damping.value,
         position=section.position.value,
         law=section.law,
         enabled=section.enabled,
     )
-
-
-def _damping(name: str, section: ContactSection) -> Stated:
-    """Read a contact's damping, whose unit its law tells, and how well it is known."""
-    return _late_stated(f'contacts.{name}.damping', section.damping, DAMPING_UNITS[section.law])
-
-
-def _late(field: str, text: str, unit: str) -> float:
-    """Read an optional quantity, not negative, whose unit depends on another key."""
-    found = _late_stated(field, text, unit)
-    if found.tolerance is not None:
-        raise InstrumentError(f'{field}: {text!r} takes no tolerance')
-    return found.value
-
-
-def _late_stated(field: str, text: str, unit: str) -> Stated:
-    try:
-        found = read_stated(text, unit) if text else Stated(0.0)
-    except ValueError as error:
-        raise InstrumentError(f'{field}: {error}') from None
-    if found.value < 0.0:
-        raise InstrumentError(f'{field}: {text!r} must be not negative')
-    return found
 
 
 def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
@@ -196,8 +171,6 @@ def _tolerances(file: InstrumentSection) -> Iterator[tuple[str, float]]:
             place = kind if alone else f'{kind}_{name}'
             for key in type(section).model_fields:
                 stated = getattr(section, key)
-                if isinstance(section, ContactSection) and key == 'damping':
-                    stated = _damping(name, section)
                 if isinstance(stated, Stated) and stated.tolerance is not None:
                     yield f'{place}.{key}', stated.tolerance
 
@@ -217,8 +190,11 @@ def _control(section: ControlSection) -> tuple[float, bool]:
         return period, section.rate == 'continuous'
     if section.period is not None:
         raise InstrumentError('control: has both rate and period; keep one of them')
-    rate = _late('control.rate', section.rate, 'Hz')
-    if rate == 0.0:
+    try:
+        rate = parsed(section.rate, 'Hz')
+    except ValueError as error:
+        raise InstrumentError(f'control.rate: {error}') from None
+    if rate <= 0.0:
         raise InstrumentError("control.rate: must be positive; write '1 kHz' or 'continuous'")
     return 1.0 / rate, False
 
@@ -279,13 +255,12 @@ def _sensors(file: InstrumentSection) -> Iterator[Sensor]:
         )
     if file.load_cell is not None:
         cell = file.load_cell
-        unit = 'N' if cell.measures == 'force' else 'N*m'
         yield Sensor(
             name='load_cell',
             kind=f'contact_{cell.measures}',
             of=cell.contact or next(iter(file.contacts)),
             channel=channel_name('load_cell', '', cell.measures),
-            resolution=_late('load_cell.resolution', cell.resolution, unit),
-            noise=_late('load_cell.noise', cell.noise, unit),
-            misfit=_late('load_cell.misfit', cell.misfit, unit),
+            resolution=cell.resolution,
+            noise=cell.noise,
+            misfit=cell.misfit,
         )

@@ -6,16 +6,35 @@ Every scalar arrives as text (see :mod:`tendon_ros.model.yaml_text`).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 import re
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, ValidationInfo
 
 from tendon_ros.base.quantity import parsed
 from tendon_ros.model.tolerance import read_stated, read_tolerance, Stated
 
 
-def quantity(unit: str, sign: str = '') -> BeforeValidator:
+@dataclass(frozen=True)
+class By:
+    """A unit that another field of the section tells, ``key``, which stands before."""
+
+    key: str
+    units: Mapping[str, str]
+
+    def told(self, info: ValidationInfo) -> str:
+        """
+        Return the unit.
+
+        :param info: the fields that were read before.
+        :return: any of them where that field is at fault, which has an error of its own.
+        """
+        return self.units.get(info.data.get(self.key, ''), next(iter(self.units.values())))
+
+
+def quantity(unit: str | By, sign: str = '') -> BeforeValidator:
     """
     Return a validator that reads a quantity.
 
@@ -24,15 +43,16 @@ def quantity(unit: str, sign: str = '') -> BeforeValidator:
     :return: the validator.
     """
 
-    def read(text: object) -> float:
-        value = text if isinstance(text, float) else parsed(text, unit)
+    def read(text: object, info: ValidationInfo) -> float:
+        own = unit.told(info) if isinstance(unit, By) else unit
+        value = text if isinstance(text, float) else parsed(text, own)
         _check_sign(text, value, sign)
         return value
 
     return BeforeValidator(read)
 
 
-def stated(unit: str, sign: str = '') -> PlainValidator:
+def stated(unit: str | By, sign: str = '') -> PlainValidator:
     """
     Return a validator that reads a quantity which may carry a tolerance.
 
@@ -41,8 +61,8 @@ def stated(unit: str, sign: str = '') -> PlainValidator:
     :return: the validator.
     """
 
-    def read(text: object) -> Stated:
-        known = read_stated(text, unit)
+    def read(text: object, info: ValidationInfo) -> Stated:
+        known = read_stated(text, unit.told(info) if isinstance(unit, By) else unit)
         _check_sign(text, known.value, sign)
         return known
 

@@ -14,7 +14,9 @@ from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import PydanticCustomError
 
 from tendon_ros.base.errors import listed
+from tendon_ros.model.instrument import DAMPING_UNITS
 from tendon_ros.model.instrument_fields import (
+    By,
     column,
     Count,
     Damping,
@@ -162,14 +164,18 @@ class ShaftSensorSection(TorqueSensorSection):
     through: Name
 
 
+#: what a load cell reads, in the unit of what it measures
+Load = Annotated[float, quantity(By('measures', {'force': 'N', 'torque': 'N*m'}), 'not negative')]
+
+
 class LoadCellSection(Section):
     """What measures a contact; its numbers are in N, or N*m where it measures torque."""
 
     contact: Name = ''
     measures: Literal['force', 'torque'] = 'force'
-    resolution: str = ''
-    noise: str = ''
-    misfit: str = ''
+    resolution: Load = 0.0
+    noise: Load = 0.0
+    misfit: Load = 0.0
 
 
 class MotorSection(Section):
@@ -194,7 +200,7 @@ class ContactSection(Section):
     arm: Annotated[float, quantity('m', 'positive')]
     stiffness: Annotated[Stated, stated('N/m', 'positive')]
     law: Literal['hunt_crossley', 'spring_damper'] = 'hunt_crossley'
-    damping: str = ''  # its unit depends on the law
+    damping: Annotated[Stated, stated(By('law', DAMPING_UNITS), 'not negative')] = Stated(0.0)
     position: Annotated[Stated, stated('rad')] = Stated(0.0)
     enabled: Switch = True
 

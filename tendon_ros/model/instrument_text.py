@@ -15,6 +15,7 @@ from tendon_ros.model.instrument import (
     Controller,
     Coupling,
     Curve,
+    DAMPING_UNITS,
     EffectUse,
     Instrument,
     Loop,
@@ -22,7 +23,6 @@ from tendon_ros.model.instrument import (
     Pulley,
     Sensor,
 )
-from tendon_ros.model.instrument_build import DAMPING_UNITS
 from tendon_ros.model.tolerance import GUESSED, written_stated, written_tolerance
 
 Document = dict[str, Any]
