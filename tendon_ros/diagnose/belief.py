@@ -92,7 +92,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     causes = final.model.causes
     ahead = early(problem, final.model)
     less = giving_less(problem, final)
-    undone = undoing(problem, final) | absorbed(problem, final) | less
+    undone = undoing(problem, final) | absorbed(problem, final, found.without) | less
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)

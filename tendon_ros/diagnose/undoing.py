@@ -77,12 +77,13 @@ def _opposed(problem: Problem, state: Fit, changes: FloatArray) -> frozenset[int
     return found
 
 
-def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
+def absorbed(problem: Problem, state: Fit, without: Sequence[Fit]) -> frozenset[int]:
     """
     Return the causes of a state that guessed numbers of the file mostly undo.
 
     :param problem: the data.
     :param state: with causes.
+    :param without: of each cause the fit without it.
     :return: which causes.
     """
     columns = _guessed(problem, state)
@@ -92,8 +93,11 @@ def absorbed(problem: Problem, state: Fit) -> frozenset[int]:
     found = set()
     for k, cause in enumerate(state.model.causes):
         whole = change(problem, state, k)
-        # they could do it as well, and have gone where they undo it
+        # they could do it as well, and have gone where they undo it; slopes promise more of many
+        # numbers than a fit without the cause makes true
+        missed = without[k].left - state.left
         absorbs = its_own(problem, state, k) < ITS_OWN
+        absorbs &= not missed @ missed > ITS_OWN**2 * (whole @ whole)
         opposes = moved @ whole < OPPOSED * np.sqrt((moved @ moved) * (whole @ whole))
         # what happens once is no number's doing
         if absorbs and opposes and not cause.instants:

@@ -176,18 +176,20 @@ def test_what_stays_is_what_the_others_leave_without_them(imitated):
 
 
 @pytest.mark.parametrize(
-    ('own', 'guessed', 'moved', 'rows'),
+    ('own', 'guessed', 'moved', 'missed', 'rows'),
     [
-        (0.05, True, -0.2, {0}),
-        (0.05, False, -0.2, set()),
-        (0.3, True, -0.2, set()),
-        (1.0, True, -0.2, set()),
+        (0.05, True, -0.2, 0.05, {0}),
+        (0.05, False, -0.2, 0.05, set()),
+        (0.3, True, -0.2, 0.3, set()),
+        (1.0, True, -0.2, 1.0, set()),
         # a number that could do it, and has not gone where it undoes it
-        (0.05, True, 0.2, set()),
-        (0.05, True, 0.0, set()),
+        (0.05, True, 0.2, 0.05, set()),
+        (0.05, True, 0.0, 0.05, set()),
+        # it could by its slope, and a fit without the cause shows that it cannot
+        (0.05, True, -0.2, 0.5, set()),
     ],
 )
-def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, moved, rows):
+def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, moved, missed, rows):
     gain = Candidate('encoder_gain', 'encoder_M')
     model = SimpleNamespace(causes=(gain,))
     problem = SimpleNamespace(
@@ -196,8 +198,10 @@ def test_what_guesses_do_as_well_is_undone_by_them(own, guessed, moved, rows):
         pack=lambda _model: np.array([0.7, moved]),
     )
     # the gain does what the number does, and a part of its own
-    state = SimpleNamespace(model=model, slope=np.column_stack([WAVE + own * OTHER, 5.0 * WAVE]))
-    assert absorbed(problem, state) == rows
+    slope = np.column_stack([WAVE + own * OTHER, 5.0 * WAVE])
+    state = SimpleNamespace(model=model, slope=slope, left=0.0 * WAVE)
+    without = SimpleNamespace(left=0.7 * missed * OTHER)
+    assert absorbed(problem, state, [without]) == rows
 
 
 def test_an_encoder_is_no_cause_where_only_the_bend_of_a_weight_tells_of_it():
@@ -211,5 +215,5 @@ def test_an_encoder_is_no_cause_where_only_the_bend_of_a_weight_tells_of_it():
     state = steps.settled(start.model.joined(gain, {'gain': 2.0}))
     assert state.cost < start.cost - 0.3 * len(start.left)
     found = Found([start, state], [[]], [start])
-    assert absorbed(ready.problem, state) == {0}
+    assert absorbed(ready.problem, state, [start]) == {0}
     assert belief(ready, found).weighed[0].chance < NAMED
