@@ -6,7 +6,7 @@ Where a pulley rests or turns round, a hair of an angle decides how much of its 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -125,3 +125,29 @@ class Rubbing:
         gone = (angle - self._late) / np.maximum(self._unsure, LEAST)
         resting = self._statics.friction_beside(angle, self._unsure) * np.exp(-0.5 * gone**2)
         return np.asarray(np.maximum(turning, resting))
+
+
+def doubts_after(
+    frictions: Sequence[Rubbing],
+    statics: Statics,
+    before: FloatArray,
+    angle: FloatArray,
+    velocity: FloatArray,
+    gap: float,
+) -> list[FloatArray]:
+    """
+    Return how uncertain friction would be after a motion; to be asked at every measurement.
+
+    :param frictions: of the same pulleys, on several grounds of uncertainty.
+    :param statics: that carries their memories, which stay where they are.
+    :param before: angles up to which they were carried [rad], shape (pulleys,).
+    :param angle: the same now.
+    :param velocity: [rad/s], shape (pulleys,).
+    :param gap: the time between [s].
+    :return: one deviation for each pulley [N m], on each of the grounds.
+    """
+    rubbed = statics.at(angle, velocity).friction
+    with statics.trial():
+        statics.carry(before, angle, gap)
+        now = statics.at(angle, velocity).friction
+        return [f.doubt(before, angle, gap, now - rubbed, now) for f in frictions]

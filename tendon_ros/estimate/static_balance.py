@@ -35,9 +35,9 @@ from tendon_ros.estimate.observer import Estimate, Measurement, Observer
 from tendon_ros.estimate.play import Play
 from tendon_ros.estimate.rest import Rest
 from tendon_ros.estimate.rigid import Rigid, told_if_rigid
-from tendon_ros.estimate.rubbing import readable, Rubbing, unsure_angles
+from tendon_ros.estimate.rubbing import doubts_after, readable, Rubbing, unsure_angles
 from tendon_ros.model.instrument import Instrument
-from tendon_ros.model.statics import Statics
+from tendon_ros.model.statics import Since, Statics
 
 FloatArray = NDArray[np.float64]
 #: what a search finds: cost, place of force and frictions in what is expected of them, slopes by
@@ -165,17 +165,15 @@ class StaticBalanceObserver(Observer):
         self._drift = self._velocity * (SMOOTHING / (gap + SMOOTHING)) if moving else 0.0
         read = np.array([measurement.values[name] for name in self._torques])
         before = self._angle if self._begun else angle.copy()
+        # friction builds up along with the angle, too: stiffer than a cable after a reversal
+        self._since = Since(before, gap) if moving else None
         unsure = self._unsure
         same = self._rest.same(before, angle, read, unsure)
         expected = self._expectation.foreseen(gap, unsure, same)
         found, covariance = self._solve(angle, read, expected)
         if moving:
             self._velocity = self._moved(angle)
-        rubbed = now = self._statics.at(angle, self._velocity).friction
-        if moving:
-            self._statics.carry(before, angle, gap)
-            now = self._statics.at(angle, self._velocity).friction
-        doubts = [f.doubt(before, angle, gap, now - rubbed, now) for f in self._frictions]
+        doubts = doubts_after(self._frictions, self._statics, before, angle, self._velocity, gap)
         trembles, doubt = (self._equations.on_pulleys @ doubts[k] for k in (0, -1))
         # what the model misses of angles leaves friction wrong by the same for as long as a pulley
         # rests, what noise makes of them by another each time
@@ -185,6 +183,7 @@ class StaticBalanceObserver(Observer):
             same = self._rest.same(before, angle, read, unsure)
             expected = self._expectation.foreseen(gap, unsure, same)
             found, covariance = self._solve(angle, read, expected)
+        self._statics.carry(before, angle, gap)
         self._refused = self._refused + 1 if self._strained > REFUSED else 0
         if self._refused > IN_A_ROW:
             raise RecordingError(
@@ -282,7 +281,7 @@ class StaticBalanceObserver(Observer):
         self, angle: FloatArray, start: FloatArray, place: FloatArray, read: FloatArray
     ) -> tuple[float, FloatArray, FloatArray, FloatArray]:
         """Return cost, residuals with the prior's, their slopes, and slopes by measured angles."""
-        balance = self._statics.at(angle, self._moved(angle))
+        balance = self._statics.at(angle, self._moved(angle), self._since)
         force, *friction = self._expected.mean + self._expected.spread @ place
         residual, by_angle = self._equations.left(balance, self._pace, force, friction, read)
         weight = 1.0 / self._exact[:, None]

@@ -196,6 +196,25 @@ class Runner:
             self._state[i] = float(angle[own])
             self._state[n + i] = float(velocity[own])
 
+    def bend(self, place: NDArray[np.intp], part: FloatArray) -> None:
+        """
+        Set memories one by one, those of pre-sliding friction for instance.
+
+        :param place: of each in the state.
+        :param part: what it is to be.
+        """
+        for n, value in zip(place.tolist(), part.tolist(), strict=True):
+            self._state[n] = value
+
+    def bending(self, place: NDArray[np.intp]) -> FloatArray:
+        """
+        Return memories one by one.
+
+        :param place: of each in the state.
+        :return: what they are.
+        """
+        return np.array([self._state[n] for n in place.tolist()], dtype=np.float64)
+
     def kept(self) -> tuple[Any, ...]:
         """Return where everything is, for :meth:`back`."""
         return tuple(np.array(one) for one in (self._state, self._carried, self._modes))

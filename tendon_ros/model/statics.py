@@ -7,12 +7,14 @@ linearisation of an observer, checks of stiffness.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.model.bristles import Bristles
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.layout import arrays_of
 from tendon_ros.model.runner import Runner
@@ -34,7 +36,8 @@ class Balance:
     ``stiffness`` [N m/rad], shape (n, n): minus its derivative by the angles.
     ``damping`` [N m s/rad], shape (n, n): minus its derivative by the velocities.
     ``loop_force``, shape (m,); ``loop_stiffness``, shape (m,): its derivative by the elongation.
-    ``friction`` [N m], shape (n,): the part of the torque that is dry friction.
+    ``friction`` [N m], shape (n,): the part of the torque that is dry friction; ``budget``: the
+    most that it can be.
     """
 
     torque: FloatArray
@@ -43,6 +46,7 @@ class Balance:
     loop_force: FloatArray
     loop_stiffness: FloatArray
     friction: FloatArray
+    budget: FloatArray
 
 
 def without_contacts(instrument: Instrument) -> Instrument:
@@ -54,6 +58,14 @@ def without_contacts(instrument: Instrument) -> Instrument:
     """
     away = tuple(replace(contact, enabled=False) for contact in instrument.contacts)
     return replace(instrument, contacts=away)
+
+
+@dataclass(frozen=True)
+class Since:
+    """Up to where memories were carried, ``angle`` [rad], shape (n,), and ``gap`` [s] ago."""
+
+    angle: FloatArray
+    gap: float
 
 
 class Linearisation:
@@ -109,7 +121,7 @@ class Linearisation:
         stiffness.flat[:: n + 1] -= by_angle
         damping.flat[:: n + 1] -= by_speed
         friction = side * budget
-        return Balance(torque + friction, stiffness, damping, tension, loop, friction)
+        return Balance(torque + friction, stiffness, damping, tension, loop, friction, budget)
 
 
 class Statics:
@@ -130,20 +142,39 @@ class Statics:
     ) -> None:
         everyone = {name: row for row, name in enumerate(instrument.pulley_names)}
         free = without_contacts(instrument)
-        self._runner = Runner(free, arrays_of(free, effects, prescribed=everyone), engine)
+        arrays = arrays_of(free, effects, prescribed=everyone)
+        self._runner = Runner(free, arrays, engine)
         self._linearisation = Linearisation(self._runner.structure)
+        self._bristles = Bristles.of(arrays)
+        self._remember()
 
-    def at(self, angle: FloatArray, velocity: FloatArray) -> Balance:
+    def at(self, angle: FloatArray, velocity: FloatArray, since: Since | None = None) -> Balance:
         """
         Return the torques at a state.
 
         :param angle: [rad], shape (n,).
         :param velocity: [rad/s], shape (n,).
-        :return: torques and derivatives there; memories of friction and cables as carried so far.
+        :param since: where friction has built up from, on a straight way; its derivative by the
+            angle is then part of the stiffness.
+        :return: torques and derivatives there; other memories, and all where ``since`` is None, as
+            carried so far.
         """
         self._runner.place(angle, velocity)
+        own = self._bristles.pulley
+        if since is None or not own.size:
+            self._runner.bend(self._bristles.place, self._bent)
+            self._runner.weigh()
+            return self._linearisation.read(self._runner)
+        way = (angle - since.angle)[own]
+        bent, slope = self._bristles.bent(self._bent, way, since.gap)
+        self._runner.bend(self._bristles.place, bent)
         self._runner.weigh()
-        return self._linearisation.read(self._runner)
+        balance = self._linearisation.read(self._runner)
+        balance.stiffness[own, own] += balance.budget[own] * slope
+        return balance
+
+    def _remember(self) -> None:
+        self._bent = self._runner.bending(self._bristles.place)
 
     def carry(self, before: FloatArray, after: FloatArray, gap: float) -> None:
         """
@@ -151,11 +182,13 @@ class Statics:
 
         :param before: angles at the beginning [rad], shape (n,).
         :param after: angles at the end [rad], shape (n,).
-        :param gap: the time between [s].
+        :param gap: the time between [s]; where it is 0 nothing happens.
         """
-        if self._runner.memories:
+        if self._runner.memories and gap > 0.0:
             now = self._runner.time
+            self._runner.bend(self._bristles.place, self._bent)
             self._runner.glide(now + gap, Signals.straight(now, gap, before, after))
+            self._remember()
 
     def friction_beside(self, angle: FloatArray, shift: FloatArray) -> FloatArray:
         """
@@ -169,12 +202,21 @@ class Statics:
         if not self._runner.memories:
             return change
         here = self.at(angle, still).friction
-        kept = self._runner.kept()
         for further in (angle + shift, angle - shift):
-            self.carry(angle, further, MOMENT)
-            change = np.maximum(change, np.abs(self.at(further, still).friction - here))
-            self._runner.back(kept)
+            with self.trial():
+                self.carry(angle, further, MOMENT)
+                change = np.maximum(change, np.abs(self.at(further, still).friction - here))
         return change
+
+    @contextmanager
+    def trial(self) -> Iterator[None]:
+        """Put all memories back to where they were, afterwards."""
+        kept = self._runner.kept()
+        try:
+            yield
+        finally:
+            self._runner.back(kept)
+            self._remember()
 
     def reset(self, pose: Mapping[str, float] | None = None) -> None:
         """
@@ -183,3 +225,4 @@ class Statics:
         :param pose: angles [rad] by pulley.
         """
         self._runner.rest(pose or {})
+        self._remember()

@@ -283,13 +283,37 @@ def test_friction_at_rest_is_not_taken_for_force(true, known, rms):
     estimate = estimated['estimate/torque']
     truth = recording['load_cell/torque'].at(estimate.time)
     off = np.abs(estimate.value - truth)
-    covered = off < 2.0 * estimated['estimate/torque_std'].value
-    assert np.mean(covered) > 0.95
+    stated = estimated['estimate/torque_std'].value
+    assert np.mean(off < 2.0 * stated) > 0.95
     # before it has moved nobody knows which way it rubs, and the estimate says so
     late = estimate.time > recording.start + STARTED
-    assert np.all(covered[~late])
+    assert np.all(off[~late] < 2.5 * stated[~late])
     assert off[late].max() < 0.3 * truth.max()
     assert rms(off[late]) < 0.06 * truth.max()
+
+
+def test_friction_stiffer_than_cables_does_not_upset_the_balance(rms):
+    """After a reversal friction builds up over an angle in which a cable hardly stretches."""
+    bench = load_instrument('bench_rig')
+    effects = [
+        EffectUse(effect, f'pulley_{name}', parameters)
+        for name in '123'
+        for effect, parameters in (
+            ('tension_friction', {'coefficient': 0.1}),
+            ('presliding_friction', {'angle': 2e-3, 'torque': 0.0}),
+        )
+    ]
+    rubbing = replace(bench, effects=tuple(effects))
+    press = chosen_trajectory('paper_fig12', bench.motor_names, {})
+    recording = simulate(rubbing, press, rate=200.0, seed=3)
+    estimated = estimate_recording(
+        recording, build_observer(rubbing, 'static_balance'), rate=100.0
+    )
+    estimate = estimated['estimate/force']
+    truth = recording['load_cell/force'].at(estimate.time)
+    assert truth.max() > 40.0
+    # 0.96 where the balance takes friction for what it was a measurement before
+    assert rms(estimate.value - truth) < 0.75
 
 
 def test_a_small_torque_is_met_at_the_edge_of_a_play():
