@@ -33,7 +33,8 @@ def as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -
 
     While a motor rests, dry friction takes any torque up to its limit, and no motion tells which:
     there the measured torque stands for the prediction, as far as friction reaches and to within
-    a deviation of noise, so that holding still is no better than having nothing to hold.
+    a deviation of noise, so that holding still is no better than having nothing to hold. A torque
+    that has lost its sign does so on either side of nothing.
 
     :param rows: what the model does along the segment.
     :param numbers: after its effects.
@@ -44,16 +45,27 @@ def as_held(rows: Rows, numbers: Numbers, segment: Segment, found: FloatArray) -
     sensors = [s.name for s in rows.instrument.sensors]
     for n, j, still in segment.at_rest(rows.instrument):
         row, measured = found[n], segment.measured[n]
-        without_sign = numbers['sensor_rectified'][sensors.index(measured.sensor.name)]
-        if without_sign or not rows.dry_limit[:, j].any():
+        if not rows.dry_limit[:, j].any():
             continue
         gain = numbers['motor_gain'][j]
         limit = _either_way(rows.dry_limit[:, j], still)
         used = rows.dry_friction[:, j]
-        held = np.clip(measured.value - row, (used - limit) / gain, (used + limit) / gain)
+        least, most = row + (used - limit) / gain, row + (used + limit) / gain
+        if numbers['sensor_rectified'][sensors.index(measured.sensor.name)]:
+            least, most = _without_sign(least, most, 2.0 * row * (rows.effort[:, j] < 0.0))
+        held = np.clip(measured.value, least, most) - row
         held = np.sign(held) * np.maximum(0.0, np.abs(held) - measured.noise)
         row += np.where(still & np.isfinite(held), held, 0.0)
     return found
+
+
+def _without_sign(
+    least: FloatArray, most: FloatArray, turned: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the bounds of what is between two others, less ``turned``, without its sign."""
+    one, other = np.abs(least - turned), np.abs(most - turned)
+    across = (least < turned) & (most > turned)
+    return np.where(across, 0.0, np.minimum(one, other)), np.maximum(one, other)
 
 
 def _either_way(limit: FloatArray, still: BoolArray) -> FloatArray:

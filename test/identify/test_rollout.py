@@ -133,6 +133,20 @@ def test_a_motor_at_rest_holds_what_friction_can(stopping, measured_on, limit, h
     assert (np.mean(off < 1.01 * noise) > 0.95) == held
 
 
+@pytest.mark.parametrize(('limit', 'held'), [(0.2, True), (0.1, False)])
+def test_what_friction_holds_may_have_lost_its_sign(stopping, measured_on, limit, held):
+    body, problem_of = stopping
+    rubs = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    lost = ('sensor_rectified', 'torque_body', {'rectified': 1.0})
+    wide = (('duration', '8 s'), ('amplitude', '40 deg'))
+    problem, still = problem_of(measured_on(body, rubs, lost, settings=wide))
+    use = EffectUse('coulomb_friction', 'pulley_body', {'torque': limit})
+    [[row]] = problem.rollouts.predicted([[use, EffectUse(*lost)]])
+    [segment] = problem.rollouts.segments
+    off = np.abs(segment.measured[0].value - row)[still]
+    assert (np.mean(off < 1.01 * segment.measured[0].noise[still]) > 0.95) == held
+
+
 def test_what_is_held_is_no_better_known_than_noise_allows(stopping, measured_on):
     body, problem_of = stopping
     # nothing rubs: whoever says that something does may not take the noise away
