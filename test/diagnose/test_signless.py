@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.asking import lost, may_be_signless
 from tendon_ros.diagnose.found import Found
@@ -128,3 +129,15 @@ def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
     assert beyond_laws(ready.problem, found.start, found.final)
     session._searched(ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience())
     assert 'looking again: a sensor may have lost its sign' not in said
+
+
+def test_a_lost_sign_hides_no_friction_from_the_search():
+    """Numbers that were fitted to a torque without sign say of no friction what it does."""
+    settings = Settings(
+        bench='arm', strata=('two_three', 'unknown', 'withheld'), channels=('motor',)
+    )
+    case = made(650, 3, settings)
+    found = session.diagnose(list(case.recordings.values()), case.instrument, jobs=1, plan=False)
+    told = {(c.effect, c.place) for c in found.diagnosis.causes}
+    assert told == {(e['effect'], e['place']) for e in case.label['effects']}
+    assert len(told) == 3
