@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tendon_ros.diagnose.asking import asked_again, signless
+from tendon_ros.diagnose.asking import asked_again
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.everywhere import without_idle
 from tendon_ros.diagnose.first import FirstRound
@@ -89,13 +89,13 @@ class Search:
         screen = Screen(self.problem, state, self._seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
-        # to numbers that were fitted to a torque without its sign nothing looks like itself
-        if not signless(self.problem, self._steps.candidates):
-            self._steps.candidates = asked_again(self._steps.candidates, proposals)
+        everybody = self._steps.candidates
+        self._steps.candidates = asked_again(everybody, proposals)
         usual = Round(self._steps, state)
-        first = FirstRound(self._steps, state, usual, self._seen)
+        first = FirstRound(self._steps, state, usual, self._seen, everybody)
         found.states.extend(self._earlier(usual, state))
         state = found.final
+        self._asks(everybody, state)
         turn = len(found.states) - 1
         challenged: Fit | None = None
         looked: list[Fit] = []  # states beside which more causes were looked for
@@ -115,6 +115,7 @@ class Search:
                     found.unweighed = first.unweighed
                     if found.unweighed is not None:
                         return found
+                    self._asks(everybody, grown)
                 else:
                     grown = usual.grown(state, screen, proposals)
                 turn += 1
@@ -141,6 +142,11 @@ class Search:
             state = challenged = found.final
         self._ordered(found)
         return found
+
+    def _asks(self, everybody: Sequence[Candidate], state: Fit | None) -> None:
+        """Ask everybody beside a lost sign: who leaves a trace was told beside one that is there."""
+        if state and any(cause.switches for cause in state.model.causes):
+            self._steps.candidates = tuple(everybody)
 
     def _earlier(self, usual: Round, start: Fit) -> Iterator[Fit]:
         """Yield states of a search that was interrupted, or what one in the same data found."""
