@@ -144,7 +144,7 @@ class Search:
         return found
 
     def _asks(self, everybody: Sequence[Candidate], state: Fit | None) -> None:
-        """Ask everybody beside a lost sign: who leaves a trace was told beside one that is there."""
+        """Ask everybody beside a lost sign: who leaves a trace was told beside none."""
         if state and any(cause.switches for cause in state.model.causes):
             self._steps.candidates = tuple(everybody)
 
