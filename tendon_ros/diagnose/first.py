@@ -74,15 +74,14 @@ class FirstRound:
     def _without_sign(self) -> Fit | None:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
-        asked, self._steps.candidates = self._steps.candidates, self._everybody
+        asked = self._steps.candidates
         for candidate in signless(self.problem, asked):
+            afar = from_afar(self._steps, lost(self._start.model, candidate))
+            if afar and afar.cost < self._start.cost:
+                self._steps.candidates = self._everybody
             alone = lost(self.problem.begun, candidate)
-            fits += [
-                from_afar(self._steps, lost(self._start.model, candidate)),
-                self._of_many(alone),
-                self._from_the_file(alone),
-            ]
-        self._steps.candidates = asked
+            fits += [afar, self._of_many(alone), self._from_the_file(alone)]
+            self._steps.candidates = asked
         believed = [fit for fit in fits if fit and self._usual.believes(self._start, fit)]
         return better(self.problem, *believed)
 
