@@ -43,5 +43,4 @@ def surprising(ready: Prepared, found: Found) -> bool:
     left = ready.problem.structures(found.final.left)[1]
     unseen = ready.held.structures(ready.held.left(found.final.model))[1]
     form = form_power(ready.problem, found.start, found.final)
-    # what laws get wrong they get wrong in what was fitted as well
-    return unseen > SURPRISE * (LEFT_NOISE + left) + form
+    return unseen > SURPRISE * (LEFT_NOISE + form + left)
