@@ -17,7 +17,6 @@ from tendon_ros.diagnose.rounds import MOST, Round
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.valleys import from_afar, SETTLED
 from tendon_ros.diagnose.worth import hopeless, outweighed
-from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen, Seen
@@ -31,24 +30,14 @@ class FirstRound:
     :param start: without any cause.
     :param usual: what a round is that has nothing special.
     :param seen: signatures beside the tolerances as they were fitted.
-    :param everybody: all that may be named. To numbers that were fitted to a reading without its
-        sign nothing looks like itself: who left no trace beside them may be there all the same.
     """
 
-    def __init__(
-        self,
-        steps: Steps,
-        start: Fit,
-        usual: Round,
-        seen: Seen,
-        everybody: Sequence[Candidate],
-    ) -> None:
+    def __init__(self, steps: Steps, start: Fit, usual: Round, seen: Seen) -> None:
         self.problem = steps.problem
         self._steps = steps
         self._start = start
         self._usual = usual
         self._seen = seen
-        self._everybody = tuple(everybody)
         #: what was found where channels should weigh by what it leaves of them
         self.unweighed: Fit | None = None
 
@@ -77,8 +66,10 @@ class FirstRound:
         asked = self._steps.candidates
         for candidate in signless(self.problem, asked):
             afar = from_afar(self._steps, lost(self._start.model, candidate))
+            # to numbers that were fitted to a reading without its sign nothing looks like itself:
+            # who left no trace beside them may be there all the same
             if afar and afar.cost < self._start.cost:
-                self._steps.candidates = self._everybody
+                self._steps.candidates = self._steps.everybody
             alone = lost(self.problem.begun, candidate)
             fits += [afar, self._of_many(alone), self._from_the_file(alone)]
             self._steps.candidates = asked

@@ -89,13 +89,12 @@ class Search:
         screen = Screen(self.problem, state, self._seen)
         proposals = self._steps.screened(screen)
         found.proposals = best_of(proposals)
-        everybody = self._steps.candidates
-        self._steps.candidates = asked_again(everybody, proposals)
+        self._steps.candidates = asked_again(self._steps.everybody, proposals)
         usual = Round(self._steps, state)
-        first = FirstRound(self._steps, state, usual, self._seen, everybody)
+        first = FirstRound(self._steps, state, usual, self._seen)
         found.states.extend(self._earlier(usual, state))
         state = found.final
-        self._asks(everybody, state)
+        self._asks(state)
         turn = len(found.states) - 1
         challenged: Fit | None = None
         looked: list[Fit] = []  # states beside which more causes were looked for
@@ -115,7 +114,7 @@ class Search:
                     found.unweighed = first.unweighed
                     if found.unweighed is not None:
                         return found
-                    self._asks(everybody, grown)
+                    self._asks(grown)
                 else:
                     grown = usual.grown(state, screen, proposals)
                 turn += 1
@@ -143,10 +142,10 @@ class Search:
         self._ordered(found)
         return found
 
-    def _asks(self, everybody: Sequence[Candidate], state: Fit | None) -> None:
+    def _asks(self, state: Fit | None) -> None:
         """Ask everybody beside a lost sign: who leaves a trace was told beside none."""
         if state and any(cause.switches for cause in state.model.causes):
-            self._steps.candidates = tuple(everybody)
+            self._steps.candidates = self._steps.everybody
 
     def _earlier(self, usual: Round, start: Fit) -> Iterator[Fit]:
         """Yield states of a search that was interrupted, or what one in the same data found."""

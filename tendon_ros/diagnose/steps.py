@@ -81,7 +81,8 @@ class Steps:
         patience: Patience | None = None,
     ) -> None:
         self.problem = problem
-        self.candidates = tuple(candidates)
+        #: all that may be named, and of these who is asked
+        self.everybody = self.candidates = tuple(candidates)
         self._allowed = {(c.effect, c.place): c for c in candidates}
         self.report = report
         self.patience = patience or Patience()

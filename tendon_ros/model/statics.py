@@ -159,14 +159,11 @@ class Statics:
         :return: torques and derivatives there; other memories, and all where ``since`` is None, as
             carried so far.
         """
-        self._runner.place(angle, velocity)
         own = self._bristles.pulley
-        if since is None or not own.size:
-            self._runner.bend(self._bristles.place, self._bent)
-            self._runner.weigh()
-            return self._linearisation.read(self._runner)
-        way = (angle - since.angle)[own]
-        bent, slope = self._bristles.bent(self._bent, way, since.gap)
+        bent, slope = self._bent, np.zeros(len(own))
+        if since is not None and own.size:
+            bent, slope = self._bristles.bent(bent, (angle - since.angle)[own], since.gap)
+        self._runner.place(angle, velocity)
         self._runner.bend(self._bristles.place, bent)
         self._runner.weigh()
         balance = self._linearisation.read(self._runner)
