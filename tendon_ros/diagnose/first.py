@@ -64,15 +64,14 @@ class FirstRound:
         """Return the best state in which a sensor knows no sign: guesses were fitted to one."""
         fits = []
         asked = self._steps.candidates
+        # to numbers that were fitted to a reading without its sign nothing looks like itself: who
+        # left no trace beside them may be there all the same
+        self._steps.candidates = self._steps.everybody
         for candidate in signless(self.problem, asked):
-            afar = from_afar(self._steps, lost(self._start.model, candidate))
-            # to numbers that were fitted to a reading without its sign nothing looks like itself:
-            # who left no trace beside them may be there all the same
-            if afar and afar.cost < self._start.cost:
-                self._steps.candidates = self._steps.everybody
             alone = lost(self.problem.begun, candidate)
+            afar = from_afar(self._steps, lost(self._start.model, candidate))
             fits += [afar, self._of_many(alone), self._from_the_file(alone)]
-            self._steps.candidates = asked
+        self._steps.candidates = asked
         believed = [fit for fit in fits if fit and self._usual.believes(self._start, fit)]
         return better(self.problem, *believed)
 

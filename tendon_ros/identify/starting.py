@@ -113,18 +113,29 @@ class Starting:
         return time, np.cumsum(pull), np.cumsum(square)
 
     def _cycles(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
-        """Find the period of a ripple from what is left of the motor's torque over its angle."""
+        """
+        Find the period of a ripple from what is left of the motor's torque over its angle.
+
+        A reading that knows no sign has it upside down where the torque is negative, as what a
+        torque that hardly changes would do to it tells.
+        """
         instrument = self._problem.rollouts.instrument
         motors = [m for m in instrument.motors if f'motor_{m.name}' == candidate.place]
         encoded = {d.motor for d in drives(instrument) if not d.by_torque}
         if not motors or motors[0].name not in encoded:
             return [values]
         [cycles] = [p for p in candidate.parameters if p.search == 'cycles']
+        [phase] = [p for p in candidate.parameters if p.search == 'phase']
+        slow = dict(values) | {cycles.name: cycles.low, phase.name: phase.low}
+        change = self._problem.left(self._fit.model.joined(candidate, slow)) - self._fit.left
+        if not np.isfinite(change).all():
+            return [values]
         most = min(WAVES / fineness(instrument), cycles.high)
         grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, most, 2.0)])
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
-        for n, c, left in self._problem.groups(self._fit.left):
+        groups, changed = (self._problem.groups(left) for left in (self._fit.left, change))
+        for (n, c, left), (_, _, turned) in zip(groups, changed, strict=True):
             sensor = segments[n].measured[c].sensor
             if sensor.kind != 'motor_torque' or sensor.of != motors[0].name:
                 continue
@@ -132,7 +143,7 @@ class Starting:
                 continue
             row = segments[n].prescribed.index(motors[0].pulley)
             angle = segments[n].motion.value[row][self._problem.masks[n][c]]
-            wave = np.exp(1j * np.outer(grid, angle[::2]))
+            wave = np.exp(1j * np.outer(grid, angle[::2])) * np.sign(turned[::2])
             wave -= wave.mean(1, keepdims=True)
             part = left[::2] - left[::2].mean()
             power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)

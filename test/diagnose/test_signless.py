@@ -16,6 +16,7 @@ from tendon_ros.diagnose.search import Search
 from tendon_ros.diagnose.worth import beyond_laws
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.starting import Starting
 from tendon_ros.model.instrument_file import load_instrument
 
 EFFORT = 'actuator/pulley_axis/effort'
@@ -67,6 +68,14 @@ def test_a_lost_sign_is_found_beside_a_spring(axis, recorded):
     spring = found.final.model.values(next(k for k, c in enumerate(causes) if c != SIGN))
     # the torque constant is a guess, so that sizes are not told; the angle at rest is
     assert spring['rest'] == pytest.approx(-0.1, abs=0.01)
+
+
+def test_a_ripple_has_its_period_beside_a_lost_sign(axis, recorded):
+    ripple = ('torque_ripple', 'motor_axis', {'amplitude': 0.1, 'cycles': 24.0, 'phase': 0.3})
+    problem = prepared([recorded(SPRING, ripple, LOST)], axis).problem
+    state = problem.fitted(lost(problem.empty, SIGN).joined(Candidate(*SPRING[:2]), SPRING[2]))
+    begun = Starting(problem, state).of(Candidate(*ripple[:2]))
+    assert begun[0][1]['cycles'] == pytest.approx(24.0, abs=1.0)
 
 
 @pytest.mark.parametrize(('right', 'looks'), [(False, True), (True, False)])
