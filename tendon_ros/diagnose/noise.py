@@ -21,7 +21,7 @@ from tendon_ros.identify.repetition import unrepeated
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Measured, Segment
 from tendon_ros.identify.smoothing import recounted, smoothed
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.signals import Signals
 
 FloatArray = NDArray[np.float64]
@@ -38,11 +38,33 @@ class Noise:
 
     ``counts``: what the motion's counts make of each channel, by recording and channel, shape
     (bins,) each, in the channel's unit. ``resting``: of each recording the channels of motors'
-    torques, with where the motor cannot be told from rest, shape (bins,).
+    torques, with where the motor cannot be told from rest, shape (bins,). ``motions``: of each how
+    it may have moved as well, its counts elsewhere, and smoother.
     """
 
     counts: tuple[tuple[FloatArray, ...], ...]
     resting: tuple[Mapping[int, BoolArray], ...]
+    motions: tuple[tuple[Signals, Signals], ...]
+
+    def beside(
+        self,
+        rollouts: Rollouts,
+        uses: Sequence[Sequence[EffectUse]],
+        predicted: Sequence[FloatArray],
+    ) -> Noise:
+        """
+        Return the same with what counts make of the channels beside a model.
+
+        A motor that gives half of the torque which the file guesses makes half as much of them.
+
+        :param rollouts: of the recordings.
+        :param uses: effects in force, for each.
+        :param predicted: of each the channels as the model has them, shape (channels, bins).
+        :return: the noise; as it is where the model cannot be computed.
+        """
+        counts = _counted(rollouts, self.motions, uses, predicted)
+        known = all(np.isfinite(row).all() for rows in counts for row in rows)
+        return replace(self, counts=counts) if known else self
 
     def given(self, segments: Sequence[Segment], predicted: Sequence[FloatArray]) -> list[Segment]:
         """
@@ -90,12 +112,14 @@ def noise_of_counts(
     :param predicted: of each the channels as the file has them, shape (channels, bins).
     :return: the noise.
     """
+    motions = tuple(
+        (_recounted(instrument, s, r), _smoother(instrument, s, r))
+        for s, r in zip(segments, recordings, strict=True)
+    )
     return Noise(
-        tuple(
-            _counted(instrument, segment, recording, rows)
-            for segment, recording, rows in zip(segments, recordings, predicted, strict=True)
-        ),
+        _counted(Rollouts(instrument, segments), motions, [[] for _ in segments], predicted),
         tuple({row: still for row, _, still in s.at_rest(instrument)} for s in segments),
+        motions,
     )
 
 
@@ -120,22 +144,27 @@ def _heard(measured: Measured, left: FloatArray, apart: int) -> float:
 
 
 def _counted(
-    instrument: Instrument, segment: Segment, recording: Recording, predicted: FloatArray
-) -> tuple[FloatArray, ...]:
-    """Return what the motion's counts make of each channel, shape (bins,)."""
+    rollouts: Rollouts,
+    motions: Sequence[tuple[Signals, Signals]],
+    uses: Sequence[Sequence[EffectUse]],
+    predicted: Sequence[FloatArray],
+) -> tuple[tuple[FloatArray, ...], ...]:
+    """Return what the motion's counts make of each channel, by recording, shape (bins,)."""
     recounted, smoother = (
-        Rollouts(instrument, [replace(segment, motion=motion)]).predicted([[]])[0]
-        for motion in (
-            _recounted(instrument, segment, recording),
-            _smoother(instrument, segment, recording),
-        )
+        rollouts.like(
+            [replace(s, motion=m) for s, m in zip(rollouts.segments, moved, strict=True)]
+        ).predicted(uses)
+        for moved in zip(*motions, strict=True)
     )
     return tuple(
-        np.hypot(
-            _level(counted - row, segment.period, COUNTED),
-            _level(once - row, segment.period, STARTS),
+        tuple(
+            np.hypot(
+                _level(counted - row, segment.period, COUNTED),
+                _level(once - row, segment.period, STARTS),
+            )
+            for row, counted, once in zip(*rows, strict=True)
         )
-        for row, counted, once in zip(predicted, recounted, smoother, strict=True)
+        for segment, *rows in zip(rollouts.segments, predicted, recounted, smoother, strict=True)
     )
 
 

@@ -57,7 +57,9 @@ class Prepared:
         :return: the problems with the lower noise.
         """
         rollouts = self.whole.rollouts
-        predicted = rollouts.predicted(self.whole.uses(model))
+        uses = self.whole.uses(model)
+        predicted = rollouts.predicted(uses)
+        noise = self.noise.beside(rollouts, uses, predicted)
         before = rollouts.segments
         segments = [
             replace(
@@ -67,9 +69,9 @@ class Prepared:
                     for pair in zip(was.measured, now.measured, strict=True)
                 ),
             )
-            for was, now in zip(before, self.noise.given(before, predicted), strict=True)
+            for was, now in zip(before, noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.like(segments), self.noise, self.shift, self.looser, self.likely)
+        return _problems(rollouts.like(segments), noise, self.shift, self.looser, self.likely)
 
     def quieter(self, other: Prepared) -> bool:
         """

@@ -43,6 +43,20 @@ def test_a_gap_is_no_noise_once_its_cause_is_known(bench, free, scaled):
     assert level(off.heard_again(off.whole.empty.joined(cause, {'gain': 0.8}))) < 1.3 * sound
 
 
+def test_counts_make_as_much_less_of_a_torque_as_the_motor_gives(measured_on):
+    body = load_instrument('single_body')
+    ready = prepared([measured_on(body)], body)
+    half = ready.whole.empty.joined(Candidate('inertia', 'pulley_body'), {'scale': 0.5})
+
+    def of_counts(noise):
+        [[torque, *_]] = noise.counts
+        return np.median(torque)
+
+    assert of_counts(ready.heard_again(half).noise) == pytest.approx(
+        0.5 * of_counts(ready.noise), rel=0.1
+    )
+
+
 def test_a_jump_of_some_counts_is_noise_and_rest_is_no_quieter(measured_on):
     # slow at first, and within a tenth of a second 50 counts: who knows with what acceleration
     name = 'actuator/pulley_body/position'
