@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 import math
 
+import numpy as np
+
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import is_part, widened
 from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway
@@ -77,7 +79,15 @@ class Begun:
             for c in (self._steps.candidates if among is None else among)
             if c.effect == cause.effect and c not in state.model.causes
         ]
-        return self._instead(state, cause, [(c, c.as_much(cause, values)) for c in others])
+        rest = state.model.without(state.model.causes.index(cause))
+
+        def begun(candidate: Candidate) -> tuple[Candidate, dict[str, float]]:
+            # cables cross: what turns one pulley forward turns another one back
+            tried = [candidate.as_much(cause, values, back=back) for back in (False, True)]
+            costs = [self._problem.cost(rest.joined(candidate, begin)) for begin in tried]
+            return candidate, tried[int(np.argmin(costs))]
+
+        return self._instead(state, cause, list(self._steps.pool.map(begun, others)))
 
     def beside_the_others(
         self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]

@@ -15,7 +15,7 @@ from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 from tendon_ros.identify.worths import worths
 
 #: part of what a cause explains that a rival which is close may leave
-LEAVES = 0.05
+LEAVES = 0.1
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 BETTER = 0.99  # part of the cost that what is no simpler must leave
 CREEPING = 20  # rounds at most in which a fit comes to its end

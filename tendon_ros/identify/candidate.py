@@ -45,12 +45,15 @@ class Candidate:
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
 
-    def as_much(self, other: Candidate, values: Mapping[str, float]) -> dict[str, float]:
+    def as_much(
+        self, other: Candidate, values: Mapping[str, float], *, back: bool = False
+    ) -> dict[str, float]:
         """
         Return parameters with which this changes as much as the same effect elsewhere.
 
         :param other: the effect at the other place, where the file may have another size of it.
         :param values: of its parameters.
+        :param back: whether what may have either sign has the other one.
         :return: of this one's; a shape that the file gives stays.
         """
         known = dict(self.given)
@@ -59,8 +62,10 @@ class Candidate:
             if p.is_shape:
                 found[p.name] = known.get(p.name, values[p.name])
             else:
-                changed = values[p.name] - q.neutral + p.neutral
-                found[p.name] = min(max(changed, p.low), p.high)
+                changed = values[p.name] - q.neutral
+                if back and p.neutral == 0.0 and p.low < 0.0:
+                    changed = -changed
+                found[p.name] = min(max(changed + p.neutral, p.low), p.high)
         return found
 
     @property

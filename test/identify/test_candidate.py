@@ -131,6 +131,14 @@ def test_an_event_can_be_of_one_recording():
     assert [p.name for p in slip.instants] == ['time']
 
 
+def test_what_crosses_may_turn_back_as_much_elsewhere():
+    here, there = (Candidate('encoder_offset', f'encoder_{name}') for name in ('M', 'L'))
+    assert there.as_much(here, {'angle': -0.02}, back=True) == {'angle': pytest.approx(0.02)}
+    # a friction has one sign
+    rubs = Candidate('coulomb_friction', 'pulley_2')
+    assert rubs.as_much(rubs, {'torque': 0.1}, back=True) == {'torque': pytest.approx(0.1)}
+
+
 def test_an_effect_of_the_file_begins_from_as_much_more_as_was_found_elsewhere():
     here = Candidate('tension_friction', 'pulley_1', given=(('coefficient', 0.03),))
     there = Candidate('tension_friction', 'pulley_2')
