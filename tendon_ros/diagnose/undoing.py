@@ -39,6 +39,8 @@ UNDONE = 5.0
 HUSHED = 20.0
 #: part of what opposed causes do each, all added up, that nothing but the true ones leaves
 EXACT = 1e-5
+#: the same part of what they do together: what is made up is off by more than so little of it
+CLOSELY = 3e-3
 #: causes from which on it is no chance that nothing is left of them in a channel
 CONSPIRING = 3
 #: part of what a cause does, as an amplitude, that guessed numbers cannot do as well
@@ -146,11 +148,12 @@ def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:
         that would be any better than they are large.
     """
     hushed = _undone(changes, HUSHED)
-    little = [
-        members
-        for members in _undone(changes, UNDONE)
-        if stays > EXACT * np.sum(changes[list(members)] ** 2)
-    ]
+    little = []
+    for members in _undone(changes, UNDONE):
+        among = changes[list(members)]
+        together = float(np.sum(among.sum(axis=0) ** 2))
+        if stays > max(EXACT * float(np.sum(among**2)), CLOSELY * together):
+            little.append(members)
     return frozenset().union(*hushed, *little)
 
 
