@@ -67,5 +67,5 @@ EFFECT = Effect(
     ),
     hook='torque',
     law=torque_ripple_law,
-    form=0.12,
+    form=0.2,
 )
