@@ -3,7 +3,7 @@ Calibrates the probabilities of a diagnosis on development seeds of the blind be
 
 ``python -m bench.calibrate KEPT.jsonl --seeds 1 2 --cases 16`` diagnoses development cases in two
 processes, keeps what speaks for each cause and whether it is true, and prints the weights of a
-logistic regression for ``tendon_ros/diagnose/judge.py``. Cases that are kept already are not run
+logistic regression for ``tendon_ros/diagnose/signs.py``. Cases that are kept already are not run
 again, so that a campaign can be continued and enlarged.
 """
 
@@ -23,8 +23,8 @@ from scipy.optimize import minimize
 from bench.development import development, development_seed
 from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import PATTERN, STRATA
-from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.session import diagnose
+from tendon_ros.diagnose.signs import Signs
 
 #: weights of a few dozen causes must not run away
 RIDGE = np.array([0.0, 0.1, 0.1, 0.1])

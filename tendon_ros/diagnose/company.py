@@ -18,9 +18,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import probability, signs_beside, spoils, Stays
+from tendon_ros.diagnose.judge import signs_beside, spoils, Stays
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.signs import probability
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 
 FloatArray = NDArray[np.float64]

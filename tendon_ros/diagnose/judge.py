@@ -1,26 +1,21 @@
-"""
-From fits to probabilities: how far to believe what was found.
-
-A likelihood that took thousands of correlated samples for independent would be certain of
-anything. What speaks for a cause is measured instead by numbers that do not grow with the length
-of a recording, and calibrated on the development seeds of the blind benchmark by logistic
-regression (``python -m bench.calibrate``).
-"""
+"""How far to believe what was found: what speaks for each cause, and what speaks against it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bodies import turned
-from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
+from tendon_ros.diagnose.form import change, form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.further import saved
+from tendon_ros.diagnose.imitable import imitable
+from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.signs import BOUNDLESS, LEFT_NOISE, probability, Signs
 from tendon_ros.diagnose.undoing import its_own
 from tendon_ros.diagnose.worth import by_channel, gains, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.driving import drives
@@ -28,69 +23,11 @@ from tendon_ros.identify.fit import Fit, Problem
 
 FloatArray = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class Signs:
-    """
-    What speaks for a cause, all in noise power per sample of the channels where it shows.
-
-    Each channel counts by what the cause is worth there: what is wrong with another motor says
-    little of this one. ``worth``: by how much misfit grows when it alone is left out; ``left``:
-    structured misfit that stays, and a part of what stays of all channels; ``form``: what the laws
-    of all causes may leave; ``beside``: the same of the others at its place. ``event``: it
-    happened once; ``part``: which part of what is left without it, of all channels, it explains.
-    """
-
-    worth: float
-    left: float
-    form: float
-    event: bool = False
-    beside: float = 0.0
-    part: float = 1.0
-
-    @property
-    def features(self) -> FloatArray:
-        """Inputs of the logistic regression."""
-        left = self.left / (LEFT_NOISE + self.form)
-        worth = self.worth / (LEFT_NOISE + self.left)
-        return np.array(
-            [
-                1.0,
-                math.log10(min(max(left, LITTLE), MUCH)),
-                math.log10(min(max(worth, LEAST_WORTH), MOST_WORTH)),
-                float(self.event),
-            ]
-        )
-
-
-#: misfit in units of what is usual below and beyond which it says nothing more
-LITTLE, MUCH = 0.3, 30.0
-#: times what stays that a cause is worth below and beyond which it says nothing more
-LEAST_WORTH, MOST_WORTH = 0.1, 1000.0
-#: power of what a model that diverges leaves
-BOUNDLESS = 1e12
-#: structured power that recordings without any effect may leave
-LEFT_NOISE = 0.05
-#: the same in blocks that no fit has seen, which are few: right causes of 24 simulated cases left
-#: 0.02 to 0.15 there, those of a real joint 0.38
+#: structured power that blocks which no fit has seen may leave without any effect: they are few,
+#: right causes of 24 simulated cases left 0.02 to 0.15 there, those of a real joint 0.38
 UNSEEN_NOISE = 0.5
 #: part of what stays anywhere that counts against a cause: the unknown may be told by it, too
 ELSEWHERE = 0.1
-#: weights of the features, from 178 causes of 99 cases that are used up for anything else, by 1.44
-#: and less 0.62: what 246 probabilities of 145 later ones, used up by now, fell short of
-WEIGHTS = np.array([-0.92, -2.45, 2.13, -2.13])
-
-
-def probability(signs: Signs) -> float:
-    """
-    Return the probability that a cause is true, or one that it cannot be told from.
-
-    :param signs: what speaks for it.
-    :return: 0 to 1.
-    """
-    return 1.0 / (1.0 + math.exp(-float(np.clip(WEIGHTS @ signs.features, -30.0, 30.0))))
-
-
 #: part of what laws may leave by which two places of a strong effect may differ by chance
 LAW = 0.02
 
@@ -181,13 +118,15 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     ]
     causes = final.model.causes
     gone = set(causes) - set(without.model.causes)
-    event = any(cause.instants for cause in gone)
+    events = [cause for cause in gone if cause.instants]
     # a motor and the pulley that it turns are one place
     body = turned(problem.rollouts.instrument)
     places = {body.get(cause.place, cause.place) for cause in gone}
+    changes = [change(problem, final, k) for k in range(len(causes))]
+    does = np.sum([c for c, cause in zip(changes, causes, strict=True) if cause in gone], axis=0)
     kept = [
-        power
-        for cause, power in zip(causes, wrong, strict=True)
+        power * (imitable(problem, does, changed) if cause.dry else 1.0)
+        for cause, power, changed in zip(causes, wrong, changes, strict=True)
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
     form = own_power(problem, found.start) + sum(wrong)
@@ -199,9 +138,11 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
         worth=max(there(gain) + strain, 1e-9),
         left=there(left.by_channel) + ELSEWHERE * left.whole,
         form=form,
-        event=event,
+        event=bool(events),
         beside=sum(kept),
         part=grown / max(grown + left.whole, 1e-9),
+        lone=bool(events)
+        and all(stands_out_in_time(problem, without, final, event) for event in events),
     )
 
 
@@ -287,10 +228,10 @@ def chance(ready: Prepared, found: Found, k: int, signs: Signs) -> float:
     """
     likely = probability(signs)
     # of all times, one fits what a law gets wrong; but then the law is wrong at other times, too
-    alone = signs.part > TAKES_EVENT
+    alone = signs.lone or signs.part > TAKES_EVENT
     luck = signs.event and signs.worth < TIMES_EVENT * signs.form and not alone
     # and what a law gets wrong may be told by something else at its place
-    drowned = signs.worth < signs.beside
+    drowned = signs.worth < signs.beside and not signs.lone
     happened = bool(found.final.model.causes[k].instants)
     spoilt = not happened and spoils(ready, found, found.without[k])
     noise = not happened and takes_noise(ready.problem, found, k)

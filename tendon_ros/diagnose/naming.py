@@ -9,10 +9,10 @@ from tendon_ros.diagnose.evidence import STRAINED
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.gap import shrink_of
 from tendon_ros.diagnose.intervals import parameter_intervals
-from tendon_ros.diagnose.judge import Signs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import Cause, FittedParameter, Judged, Verdict
+from tendon_ros.diagnose.signs import Signs
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem

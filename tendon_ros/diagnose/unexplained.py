@@ -6,8 +6,8 @@ import math
 
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import LEFT_NOISE
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.signs import LEFT_NOISE
 
 #: structured power of noise that wanders: sensors of sound simulated belts left 0.12 to 0.14
 WANDERS = 0.07

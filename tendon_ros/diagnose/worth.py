@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.form import form_power, form_profile, own_power
+from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
@@ -65,6 +66,8 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     profile = form_profile(problem, start, before)
     form = own_power(problem, start) + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time, and nor is what has no law
+        if all(stands_out_in_time(problem, before, after, event) for event in new):
+            return True
         part = _part_where_it_happens(problem, before, after, new)
         return part > TAKES_EVENT or (part > HALF and gain > TIMES_EVENT * form)
     if gain > form:

@@ -13,14 +13,13 @@ from tendon_ros.diagnose.judge import (
     chance,
     IDLE,
     NOTHING,
-    probability,
-    Signs,
     signs_beside,
     spoils,
     stays,
     UNSEEN_NOISE,
 )
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.signs import probability, Signs
 from tendon_ros.identify.candidate import Candidate
 
 FRICTION = ('coulomb_friction', 'pulley_3', {'torque': 0.1})

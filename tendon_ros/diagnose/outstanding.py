@@ -1,0 +1,83 @@
+"""
+Events that stand out from all that laws get wrong.
+
+A push that is fitted to one reversal explains most of what a friction leaves there, but friction
+lets go a moment too early at other reversals, too. What happened once leaves more than that,
+for as long as it lasts, and nothing else in the recordings leaves as much for as long.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+#: times what is left of any other stretch as long that an event leaves where it is not known
+STANDS_OUT = 3.0
+#: part of a stretch that has to be fitted for it to say anything
+TOLD = 0.5
+
+
+def stands_out_in_time(problem: Problem, without: Fit, state: Fit, event: Candidate) -> bool:
+    """
+    Return whether an event leaves far more than any other stretch of the recordings.
+
+    :param problem: the data.
+    :param without: a fit without it.
+    :param state: with it, and all else.
+    :param event: one of its causes, with a time.
+    :return: whether: and no more once it is known.
+    """
+    values = state.model.values(state.model.causes.index(event))
+    [begun] = [values[p.name] for p in event.instants]
+    lasts = [values[p.name] for p in event.parameters if p.search == 'duration']
+    segments = problem.rollouts.segments
+    happens = [
+        (s.time >= begun) & (s.time < begun + lasts[0] if lasts else True)
+        if event.acts_in(s.name)
+        else np.zeros(len(s.time), dtype=np.bool_)
+        for s in segments
+    ]
+    seconds = max(s.period * float(own.sum()) for s, own in zip(segments, happens, strict=True))
+    then, now = _power(problem, without.left), _power(problem, state.left)
+    told = sum(float(count[own].sum()) for (_, count), own in zip(then, happens, strict=True))
+    if told == 0.0:
+        return False
+    before, after = (
+        sum(float(power[own].sum()) for (power, _), own in zip(rows, happens, strict=True)) / told
+        for rows in (then, now)
+    )
+    elsewhere = [
+        _most(power, count, own, round(seconds / s.period))
+        for s, (power, count), own in zip(segments, now, happens, strict=True)
+    ]
+    most = max(elsewhere)
+    return most > 0.0 and before > STANDS_OUT * most and after <= most
+
+
+def _power(problem: Problem, left: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    """Return of each recording the squares of all channels, and how many, shape (bins,) each."""
+    masks = problem.masks
+    found = [(np.zeros(m.shape[1]), np.zeros(m.shape[1])) for m in masks]
+    for n, c, own in problem.groups(left):
+        power, count = found[n]
+        power[masks[n][c]] += own**2
+        count[masks[n][c]] += 1.0
+    return found
+
+
+def _most(power: FloatArray, count: FloatArray, happens: BoolArray, bins: int) -> float:
+    """Return the largest mean of any stretch of so many bins beside an event; zero without one."""
+    if not 0 < bins <= len(power):
+        return 0.0
+    window = np.ones(bins)
+    rows = power, count, happens.astype(np.float64)
+    own, known, event = (np.convolve(row, window, mode='valid') for row in rows)
+    tells = (event < 0.5) & (known > TOLD * bins * count.max(initial=0.0))
+    means = np.where(tells, own / np.maximum(known, 1.0), 0.0)
+    return float(means.max(initial=0.0))
