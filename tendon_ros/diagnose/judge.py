@@ -199,14 +199,17 @@ def takes_noise(problem: Problem, found: Found, k: int) -> bool:
     :param problem: the fitted bins.
     :param found: what the search has found.
     :param k: which cause.
-    :return: whether it is one of these encoders, nothing but noise is left without it, and no more
-        of that has any form than recordings without any effect leave, or little of what it takes
-        away has; more of it must have where guesses could do most of it as well.
+    :return: whether it is at one of these encoders, or such an inertia, nothing but noise is left
+        without it, and no more of that has any form than recordings without any effect leave, or
+        little of what it takes away has; more of it must have where guesses could do most of it as
+        well.
     """
     without, final = found.without[k], found.final
+    cause = final.model.causes[k]
     driving = {d.sensor.name for d in drives(problem.rollouts.instrument)}
-    place = final.model.causes[k].place
-    if place not in driving or without.cost > NOISY * len(without.left):
+    if cause.effect == 'inertia':
+        driving = {f'pulley_{name}' for name in problem.rollouts.instrument.driven}
+    if cause.place not in driving or without.cost > NOISY * len(without.left):
         return False
     before = problem.structured(without.left)
     shared = before - problem.structured(final.left)

@@ -39,8 +39,9 @@ UNDONE = 5.0
 HUSHED = 20.0
 #: part of what opposed causes do each, all added up, that nothing but the true ones leaves
 EXACT = 1e-5
-#: the same part of what they do together: what is made up is off by more than so little of it
-CLOSELY = 3e-3
+#: part of what they do together that stays at most beside true ones, and times its power that
+#: these do each alone, all added up: what is made up of more may be close to anything
+CLOSELY, MADE_UP = 3e-3, 12.0
 #: causes from which on it is no chance that nothing is left of them in a channel
 CONSPIRING = 3
 #: part of what a cause does, as an amplitude, that guessed numbers cannot do as well
@@ -151,8 +152,9 @@ def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:
     little = []
     for members in _undone(changes, UNDONE):
         among = changes[list(members)]
-        together = float(np.sum(among.sum(axis=0) ** 2))
-        if stays > max(EXACT * float(np.sum(among**2)), CLOSELY * together):
+        alone, together = float(np.sum(among**2)), float(np.sum(among.sum(axis=0) ** 2))
+        close = stays <= CLOSELY * together and alone < MADE_UP * together
+        if stays > EXACT * alone and not close:
             little.append(members)
     return frozenset().union(*hushed, *little)
 

@@ -68,5 +68,5 @@ EFFECT = Effect(
     hook='torque',
     law=disturbance_law,
     switches=switches,
-    form=0.25,
+    form=0.12,
 )

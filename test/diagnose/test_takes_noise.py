@@ -13,27 +13,35 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
 
+LATE = Candidate('sensor_delay', 'encoder_body')
+DAMPED = Candidate('viscous_friction', 'pulley_body')
+LIGHT = Candidate('inertia', 'pulley_body')
+
 
 @pytest.mark.parametrize(
-    ('place', 'before', 'gain', 'shared', 'apart', 'noise'),
+    ('cause', 'before', 'gain', 'shared', 'apart', 'noise'),
     [
-        ('encoder_body', 0.9, 0.5, 0.0, 1.0, True),
-        ('encoder_body', 0.9, 0.5, 0.2, 1.0, False),
+        (LATE, 0.9, 0.5, 0.0, 1.0, True),
+        (LATE, 0.9, 0.5, 0.2, 1.0, False),
         # guesses could have done it
-        ('encoder_body', 0.9, 0.5, 0.2, 0.3, True),
-        ('encoder_body', 0.9, 0.5, 0.35, 0.3, False),
+        (LATE, 0.9, 0.5, 0.2, 0.3, True),
+        (LATE, 0.9, 0.5, 0.35, 0.3, False),
         # recordings without any effect leave as much
-        ('encoder_body', 0.9, 0.06, 0.04, 1.0, True),
+        (LATE, 0.9, 0.06, 0.04, 1.0, True),
         # more than noise is left without it, whatever its form
-        ('encoder_body', 3.0, 0.5, 0.0, 0.3, False),
+        (LATE, 3.0, 0.5, 0.0, 0.3, False),
         # it has nothing to do with how counts become torques
-        ('pulley_body', 0.9, 0.5, 0.0, 1.0, False),
+        (DAMPED, 0.9, 0.5, 0.0, 1.0, False),
+        # and a lighter body has: the accelerations are its noise
+        (LIGHT, 0.9, 0.5, 0.0, 1.0, True),
+        (LIGHT, 0.9, 0.5, 0.2, 1.0, False),
+        (LIGHT, 3.0, 0.5, 0.0, 1.0, False),
     ],
 )
 def test_what_has_no_form_and_is_no_more_than_noise_is_no_cause(
-    monkeypatch, place, before, gain, shared, apart, noise
+    monkeypatch, cause, before, gain, shared, apart, noise
 ):
-    model = SimpleNamespace(causes=[SimpleNamespace(place=place)])
+    model = SimpleNamespace(causes=[cause])
     rollouts = SimpleNamespace(instrument=load_instrument('single_body'))
 
     def fit(power):

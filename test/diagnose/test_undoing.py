@@ -46,9 +46,10 @@ def test_little_stays_of_what_is_undone(changes, rows):
     [
         # a softer contact gives back what an offset presses, and the two explain to the last bit
         (0.35, 1e-6, set()),
-        (0.35, 3e-4, {0, 1}),
-        # of what they do together as little stays where they are not so far apart
-        (0.5, 2e-4, set()),
+        (0.35, 1e-4, {0, 1}),
+        # less is made up by two that are not so far apart, and next to nothing of that stays
+        (0.5, 1e-4, set()),
+        (0.5, 1e-3, {0, 1}),
         # what is hardly there at all is no proof of anything
         (0.2, 1e-6, {0, 1}),
     ],
