@@ -14,8 +14,9 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
 from tendon_ros.identify.worths import worths
 
-#: part of what a cause explains that a rival which is close may leave
-LEAVES = 0.1
+#: part of what a cause explains that a rival which is close may leave; and where channels weigh by
+#: what stays of them, since less of that is noise
+LEAVES, WEIGHED = 0.1, 0.05
 CLOSE = 6  # rivals that are fitted as carefully as the cause itself
 BETTER = 0.99  # part of the cost that what is no simpler must leave
 CREEPING = 20  # rounds at most in which a fit comes to its end
@@ -84,7 +85,8 @@ def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Riva
     :param rivals: fits of others in its place.
     :return: those, in the order of the rivals.
     """
-    near = state.cost + LEAVES * max(without.cost - state.cost, 0.0)
+    leaves = WEIGHED if problem.by_misfit else LEAVES
+    near = state.cost + leaves * max(without.cost - state.cost, 0.0)
     near += tie(problem, state) * len(state.left)
     return [r for r in rivals if r.fit.cost < near]
 
