@@ -1,6 +1,7 @@
 """Rivals that come near, and what held one of them back."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -59,10 +60,13 @@ def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
     state, without = (replace(fit, cost=part * samples) for part in (1.0, 11.0))
     rivals = [
         Rival(one, replace(fit, cost=part * samples))
-        for one, part in ((COULOMB, 1.4), (DAMPED, 5.0), (FAR, 7.0))
+        for one, part in ((COULOMB, 1.4), (WEIGHT, 1.8), (DAMPED, 5.0), (FAR, 7.0))
     ]
-    assert halfway(state, without, rivals) == [COULOMB, DAMPED]
-    assert close_ones(problem, state, without, rivals) == rivals[:1]
+    assert halfway(state, without, rivals) == [COULOMB, WEIGHT, DAMPED]
+    assert close_ones(problem, state, without, rivals) == rivals[:2]
+    # of what stays of channels less is noise
+    machine = SimpleNamespace(by_misfit=True, structured=problem.structured)
+    assert close_ones(machine, state, without, rivals) == rivals[:1]
 
 
 def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, measured_on):
