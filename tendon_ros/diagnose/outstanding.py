@@ -19,6 +19,8 @@ BoolArray = NDArray[np.bool_]
 
 #: times what is left of any other stretch as long that an event leaves where it is not known
 STANDS_OUT = 3.0
+#: noise power that any stretch may leave
+NOISE = 1.0
 #: part of a stretch that has to be fitted for it to say anything
 TOLD = 0.5
 
@@ -53,31 +55,38 @@ def stands_out_in_time(problem: Problem, without: Fit, state: Fit, event: Candid
         for rows in (then, now)
     )
     elsewhere = [
-        _most(power, count, own, round(seconds / s.period))
+        mean
         for s, (power, count), own in zip(segments, now, happens, strict=True)
+        for mean in _means(power, count, own, round(seconds / s.period))
     ]
-    most = max(elsewhere)
-    return most > 0.0 and before > STANDS_OUT * most and after <= most
+    if not elsewhere:
+        return False
+    most = max(NOISE, *elsewhere)
+    return before > STANDS_OUT * most and after <= most
 
 
 def _power(problem: Problem, left: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
-    """Return of each recording the squares of all channels, and how many, shape (bins,) each."""
+    """
+    Return of each recording what neighbouring bins of all channels share, and how many they are.
+
+    Friction that lets go leaves single spikes, which are no push. Of shape (bins,) each.
+    """
     masks = problem.masks
     found = [(np.zeros(m.shape[1]), np.zeros(m.shape[1])) for m in masks]
     for n, c, own in problem.groups(left):
         power, count = found[n]
-        power[masks[n][c]] += own**2
-        count[masks[n][c]] += 1.0
+        at = np.flatnonzero(masks[n][c])[:-1]
+        power[at] += own[:-1] * own[1:]
+        count[at] += 1.0
     return found
 
 
-def _most(power: FloatArray, count: FloatArray, happens: BoolArray, bins: int) -> float:
-    """Return the largest mean of any stretch of so many bins beside an event; zero without one."""
+def _means(power: FloatArray, count: FloatArray, happens: BoolArray, bins: int) -> list[float]:
+    """Return the means of all stretches of so many bins beside an event that tell anything."""
     if not 0 < bins <= len(power):
-        return 0.0
+        return []
     window = np.ones(bins)
     rows = power, count, happens.astype(np.float64)
     own, known, event = (np.convolve(row, window, mode='valid') for row in rows)
     tells = (event < 0.5) & (known > TOLD * bins * count.max(initial=0.0))
-    means = np.where(tells, own / np.maximum(known, 1.0), 0.0)
-    return float(means.max(initial=0.0))
+    return [float(mean) for mean in own[tells] / known[tells]]
