@@ -122,11 +122,17 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     # a motor and the pulley that it turns are one place
     body = turned(problem.rollouts.instrument)
     places = {body.get(cause.place, cause.place) for cause in gone}
-    changes = [change(problem, final, k) for k in range(len(causes))]
-    does = np.sum([c for c, cause in zip(changes, causes, strict=True) if cause in gone], axis=0)
+    does = [change(problem, final, k) for k, cause in enumerate(causes) if cause in gone]
+
+    def alike(k: int) -> float:
+        # only of a dry friction is it known how its law is wrong
+        if not causes[k].dry:
+            return 1.0
+        return imitable(problem, np.sum(does, axis=0), change(problem, final, k))
+
     kept = [
-        power * (imitable(problem, does, changed) if cause.dry else 1.0)
-        for cause, power, changed in zip(causes, wrong, changes, strict=True)
+        power * alike(k)
+        for k, (cause, power) in enumerate(zip(causes, wrong, strict=True))
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
     form = own_power(problem, found.start) + sum(wrong)
