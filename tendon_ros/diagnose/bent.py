@@ -227,9 +227,7 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     numbers = modified(instrument, in_force(instrument.effects, uses))
     names = [f'motor_{name}' for name in instrument.motor_names]
     j = names.index(cause.place)
-    usual = problem.rollouts.usual(
-        instrument.motor_names[j], numbers['motor_gain'][j], numbers['motor_bias'][j]
-    )
+    usual = problem.rollouts.usual(instrument.motor_names[j], numbers['motor_gain'][j])
     return model.values(k)['limit'] < usual
 
 

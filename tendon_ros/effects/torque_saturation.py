@@ -9,8 +9,9 @@ Equation, with u = |torque asked for| / limit, from u = 1 - knee to 1 + knee::
 
     |torque on the pulley| = limit (u - (u - 1 + knee)^2 / (4 knee))
 
-Below it is u limit, beyond it limit; a lower limit of the file holds without a knee. The neutral
-value is a torque that no instrument comes near.
+Below it is u limit, beyond it limit; a lower limit of the file holds without a knee. A bias of the
+motor comes on top: a drive limits what it asks for, and its current sensor's offset is not part of
+that. The neutral value is a torque that no instrument comes near.
 
 Source: definition.
 """

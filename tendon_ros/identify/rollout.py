@@ -116,18 +116,17 @@ class Rollouts:
                     found.setdefault(m.sensor.of, []).append(m.value[np.isfinite(m.value)])
         return {name: np.concatenate(rows) for name, rows in found.items()}
 
-    def usual(self, motor: str, gain: float, bias: float) -> float:
+    def usual(self, motor: str, gain: float) -> float:
         """
-        Return the torque that a motor usually keeps below.
+        Return the torque that is usually asked of a motor, or less.
 
         :param motor: its name.
         :param gain: of its torque by the reported one.
-        :param bias: what is added to that [N m].
         :return: [N m]; 0 where it reported nothing.
         """
         reported = self._torques.get(motor, np.zeros(0))
         part = usual_part(self.instrument, motor)
-        return float(np.quantile(np.abs(gain * reported + bias), part)) if reported.size else 0.0
+        return float(np.quantile(np.abs(gain * reported), part)) if reported.size else 0.0
 
     def predicted(
         self, uses: Sequence[Sequence[EffectUse]], asked: Sequence[bool] | None = None

@@ -84,7 +84,7 @@ def as_reported(
     numbers: Numbers,
     segment: Segment,
     found: FloatArray,
-    usual: Callable[[str, float, float], float],
+    usual: Callable[[str, float], float],
 ) -> FloatArray:
     """
     Return the predictions with the torque limits of the motors seen as the recording sees them.
@@ -97,7 +97,7 @@ def as_reported(
     :param numbers: after its effects.
     :param segment: what was measured.
     :param found: what the model predicts, shape (channels, bins); it is changed.
-    :param usual: torque that a motor, by name, gain and bias, usually keeps below [N m].
+    :param usual: torque that is usually asked of a motor, by name and gain, or less [N m].
     :return: the same array.
     """
     names = list(instrument.motor_names)
@@ -109,7 +109,7 @@ def as_reported(
             continue
         # a limit that nearly all torques passed is none: it would excuse whatever the model asks
         gain, bias = numbers['motor_gain'][j], numbers['motor_bias'][j]
-        least = usual(measured.sensor.of, gain, bias)
+        least = usual(measured.sensor.of, gain)
         asked = gain * found[row] + bias
         reported = measured.level
         given, _ = given_by(numbers, j, reported, least)

@@ -34,6 +34,8 @@ def given_by(
     """
     Return the torque that a motor gives, and its slope by the one that it reports.
 
+    A drive limits what is asked of it; what its current sensor is off by comes on top.
+
     :param numbers: after the effects.
     :param motor: its index.
     :param reported: torque that it reports [N m].
@@ -42,5 +44,5 @@ def given_by(
     """
     gain, bias = numbers['motor_gain'][motor], numbers['motor_bias'][motor]
     limit, knee = max(numbers['motor_limit'][motor], least), numbers['motor_knee'][motor]
-    given, slope = limited(gain * reported + bias, float(limit), float(knee))
-    return given, gain * slope
+    given, slope = limited(gain * reported, float(limit), float(knee))
+    return given + bias, gain * slope

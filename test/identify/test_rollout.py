@@ -161,12 +161,12 @@ def test_what_is_held_is_no_better_known_than_noise_allows(stopping, measured_on
     assert np.std((value - holding)[still]) > 0.9 * np.std((value - plain)[still])
 
 
-def test_a_limit_that_a_bias_passes_all_along_excuses_nothing(stopping, measured_on):
+def test_a_limit_that_nearly_all_torques_pass_excuses_nothing(stopping, measured_on):
     body, problem_of = stopping
     spring = ('joint_spring', 'pulley_body', {'stiffness': 0.5})
     problem, _ = problem_of(measured_on(body, spring))
     uses = [
-        EffectUse('torque_bias', 'motor_body', {'torque': 5.0}),
+        EffectUse('torque_gain', 'motor_body', {'gain': 3.0}),
         EffectUse('torque_saturation', 'motor_body', {'limit': 0.05}),
     ]
     [segment] = problem.rollouts.segments

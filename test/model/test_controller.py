@@ -34,14 +34,15 @@ def test_a_speed_loop_within_a_position_loop_lags(body, derivative, behind, cont
 
 @pytest.mark.parametrize('continuous', [False, True])
 @pytest.mark.parametrize('knee', [0.0, 0.3])
-def test_a_limit_sets_in_over_its_knee(body, knee, continuous):
+@pytest.mark.parametrize('bias', [0.0, 0.4])
+def test_a_limit_sets_in_over_its_knee_and_a_bias_comes_on_top(body, bias, knee, continuous):
     weak = EffectUse('torque_saturation', 'motor_body', {'limit': 1.0, 'knee': knee})
     gains = Controller(kp=KP, ki=0.0, kd=0.0, limit=100.0, derivative='error')
     rig = replace(
         body(motors=(Motor('body', 'body', gains),)),
         control_period=1e-4,
         continuous_control=continuous,
-        effects=(weak,),
+        effects=(weak, EffectUse('torque_bias', 'motor_body', {'torque': bias})),
     )
     asked = np.array([-3.0, -1.1, -0.5, 0.6, 0.8, 0.95, 1.2, 1.4])
     given = []
@@ -51,6 +52,6 @@ def test_a_limit_sets_in_over_its_knee(body, knee, continuous):
         rows = simulation.follow(command) if continuous else simulation.run(command)
         given.append(INERTIA * (rows.velocity[2, 0] - rows.velocity[1, 0]) / rig.control_period)
     expected, slope = limited(asked, 1.0, knee)
-    assert given == pytest.approx(expected, rel=1e-3)
+    assert given == pytest.approx(expected + bias, rel=1e-3)
     assert np.all(np.abs(expected) <= np.minimum(np.abs(asked), 1.0))
     assert np.array_equal(slope == 1.0, np.abs(asked) <= 1.0 - knee)

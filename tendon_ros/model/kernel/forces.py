@@ -159,8 +159,9 @@ def drive(m: Floats, d: Ints, w: Floats, s: Floats, c: Floats, t: float, at: int
         )
         torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
         c[COMMAND + j] = torque
-        applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
-        w[INPUT + i], part = limited(applied, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+        asked = m[MOTOR_GAIN + j] * torque
+        given, part = limited(asked, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+        w[INPUT + i] = given + m[MOTOR_BIAS + j]
         free = wish == torque and part > 0.0
         gain = m[MOTOR_GAIN + j] * part if free else 0.0
         w[TORQUE_T + i] -= gain * m[KP + j]

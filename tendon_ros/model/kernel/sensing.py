@@ -174,8 +174,9 @@ def control(
         if torque == wish:  # the integral rests while the limit holds
             c[SUM + j] = total
         c[COMMAND + j] = torque
-        applied = m[MOTOR_GAIN + j] * torque + m[MOTOR_BIAS + j]
-        applied, _ = limited(applied, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+        asked = m[MOTOR_GAIN + j] * torque
+        given, _ = limited(asked, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+        applied = given + m[MOTOR_BIAS + j]
         w[TORQUE + i] += applied - w[INPUT + i]
         w[INPUT + i] = applied
         if g[MODE + i] == 0:
