@@ -21,8 +21,11 @@ from tendon_ros.identify.starting import Starting
 
 FloatArray = NDArray[np.float64]
 
-#: signatures by the proposals that they belong to
-Seen = dict[tuple[Candidate, tuple[float, ...]], NDArray[np.float32] | None]
+#: signatures by the proposals that they belong to, and by the lost signs beside which they were
+#: seen: without its sign, what is read is upside down half of the time
+Seen = dict[
+    tuple[Candidate, tuple[float, ...], frozenset[Candidate]], NDArray[np.float32] | None
+]
 
 SUSPECT = 1.5  # deviations of a number of the file from which on its effect is suspected
 FARTHEST = 30.0  # typical sizes that a first proposal goes
@@ -87,6 +90,7 @@ class Screen:
         self.problem = problem
         self.fit = fit
         self._seen: Seen = {} if seen is None else seen
+        self._signs = frozenset(c for c in fit.model.causes if c.switches)
         self._starting = Starting(problem, fit)
         self._free = problem.free(fit)
         # what a bound holds back imitates nothing
@@ -171,7 +175,7 @@ class Screen:
         """Return the signature of a first look, perhaps as it was beside another state."""
         if proposal.candidate.instants:  # as large as what is left here says
             return self._changes(proposal, at)
-        key = (proposal.candidate, proposal.z)
+        key = (proposal.candidate, proposal.z, self._signs)
         if key not in self._seen:
             found = self._changes(proposal, at)
             self._seen[key] = None if found is None else found.astype(np.float32)

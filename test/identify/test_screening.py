@@ -6,7 +6,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, everyone
-from tendon_ros.identify.screening import Screen
+from tendon_ros.identify.screening import Screen, Seen
 from tendon_ros.identify.starting import Starting
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -56,6 +56,19 @@ def test_what_leaves_no_trace_is_not_proposed(bench, measured_on):
     screen = Screen(problem, problem.fitted(problem.empty))
     # nothing is touched, so the wall's stiffness does nothing
     assert screen.proposals(Candidate('contact_stiffness', 'contact')) == []
+
+
+def test_what_was_seen_with_a_sign_tells_nothing_once_it_is_lost(bench, measured_on):
+    """Half of the time a bias does the opposite of it."""
+    bias = ('torque_bias', 'motor_L', {'torque': 0.1})
+    lost = ('sensor_rectified', 'torque_L', {'rectified': 1.0})
+    problem = prepared([measured_on(bench, bias, lost)], bench).problem
+    seen: Seen = {}
+    candidate = Candidate(*bias[:2])
+    Screen(problem, problem.fitted(problem.empty, rounds=0), seen).proposals(candidate)
+    signless = problem.empty.joined(Candidate(*lost[:2]), lost[2])
+    [best] = Screen(problem, problem.fitted(signless, rounds=0), seen).proposals(candidate)
+    assert best.values['torque'] == pytest.approx(0.1, rel=0.3)
 
 
 def test_a_size_that_can_only_grow_is_not_made_smaller(bench, measured_on):
