@@ -9,7 +9,7 @@ off with them, so the instrument that a diagnosis writes has them.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
@@ -77,6 +77,25 @@ class Belief:
         """
         others = (k for k in range(len(self.weighed)) if k not in which)
         return found.final.model.without(*others)
+
+    def doubting(self, unsized: Collection[int]) -> Belief:
+        """
+        Return the same where causes that may as well have no size are not named.
+
+        :param unsized: causes whose stated intervals hold none; those of a company make up for one
+            another, and are named for all of them.
+        :return: with those no more probable than what may be nothing.
+        """
+        members = {k for company in self.companies for k in company}
+        doubted = {k for k in self.named if k in unsized and k not in members}
+        return replace(
+            self,
+            named={k: w for k, w in self.named.items() if k not in doubted},
+            weighed=tuple(
+                replace(w, chance=min(IDLE, w.chance)) if k in doubted else w
+                for k, w in enumerate(self.weighed)
+            ),
+        )
 
 
 def belief(ready: Prepared, found: Found) -> Belief:

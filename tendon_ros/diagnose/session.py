@@ -28,6 +28,7 @@ from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
+from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.memory import Memory
@@ -128,6 +129,9 @@ def diagnose(
     # numbers that went along with something unknown say nothing of the machine
     astray = not kept and foretells(heard.held, final.model, file)
     final = heard.problem.centred(heard.problem.fitted(file, rounds=0) if astray else final)
+    # beside the noise of all channels as it is in the end
+    nothing = unsized(heard.problem, final)
+    held = held.doubting([k for n, k in enumerate(kept) if n in nothing])
     weighed = [held.named.get(k, held.weighed[k]) for k in kept]
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]

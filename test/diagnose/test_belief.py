@@ -56,6 +56,16 @@ def alike(found_of):
     )
 
 
+def test_who_may_as_well_have_no_size_is_not_named_unless_it_stands_for_others(alike):
+    ready, found = alike
+    held = belief(ready, found)
+    held = replace(held, named=dict(enumerate(held.weighed)), companies=((0, 1),))
+    doubted = held.doubting([0, 2])
+    assert set(doubted.named) == {0, 1}
+    assert doubted.weighed[2].chance == IDLE < held.weighed[2].chance
+    assert doubted.weighed[:2] == held.weighed[:2]
+
+
 def test_causes_that_make_up_for_one_another_are_certain_together(alike):
     ready, found = alike
     judged = belief(ready, found)
