@@ -52,7 +52,7 @@ class EstimatorNode(TendonNode):
             'compile for some twenty seconds'
         )
         start = time.monotonic()
-        channels = [name for name in str(values['channels']).split(',') if name]
+        channels = [c for part in str(values['channels']).split(',') if (c := part.strip())]
         self._observer: Observer = build_observer(
             instrument,
             self._method,
