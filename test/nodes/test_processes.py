@@ -321,8 +321,8 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
         ('estimator', ['--method', 'magic'], 'there are contact_angle'),
         (
             'estimator',
-            ['--method', 'static_balance', '--channels', 'actuator/pulley_M/effort,none'],
-            'none',
+            ['--method', 'static_balance', '--channels', 'actuator/pulley_M/effort, none'],
+            "no sensor gives 'none'",
         ),
         (
             'estimator',
