@@ -23,9 +23,7 @@ FloatArray = NDArray[np.float64]
 
 #: signatures by the proposals that they belong to, and by the lost signs beside which they were
 #: seen: without its sign, what is read is upside down half of the time
-Seen = dict[
-    tuple[Candidate, tuple[float, ...], frozenset[Candidate]], NDArray[np.float32] | None
-]
+Seen = dict[tuple[Candidate, tuple[float, ...], frozenset[Candidate]], NDArray[np.float32] | None]
 
 SUSPECT = 1.5  # deviations of a number of the file from which on its effect is suspected
 FARTHEST = 30.0  # typical sizes that a first proposal goes
