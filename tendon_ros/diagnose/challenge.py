@@ -13,6 +13,7 @@ from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, excused, is_polled
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.free_unit import without_unit
 from tendon_ros.diagnose.one_body import divide, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
@@ -122,6 +123,10 @@ class Challenge:
             self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
         ]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
+        known = without_unit(self._steps, found)
+        if known is not None:
+            found.states[-1], self._stood = known, {}
+            self.of(found, brief=brief)
 
     def _converged(self, found: Found) -> bool:
         """
