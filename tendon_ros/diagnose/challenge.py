@@ -57,6 +57,7 @@ class Challenge:
         # whom to ask when a cause that has stood is asked again, since another one was replaced
         self._near: dict[Candidate, list[Candidate]] = {}
         self._seen = seen
+        self._unit_known = False
 
     def of(self, found: Found, *, brief: bool = False) -> None:
         """
@@ -123,8 +124,10 @@ class Challenge:
             self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
         ]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
-        known = without_unit(self._steps, found)
+        # once: who comes back in another's place stays
+        known = None if self._unit_known else without_unit(self._steps, found)
         if known is not None:
+            self._unit_known = True
             found.states[-1], self._stood = known, {}
             self.of(found, brief=brief)
 

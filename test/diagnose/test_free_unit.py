@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose import challenge
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.free_unit import without_unit
 from tendon_ros.diagnose.prepare import prepared
@@ -53,3 +54,18 @@ def test_it_stays_where_the_fit_without_it_has_come_down(found):
     steps, search = found
     other = replace(search, without=[search.start, search.without[1]])
     assert without_unit(steps, other) is None
+
+
+def test_a_challenge_sends_it_away_once(found, monkeypatch):
+    steps, search = found
+    asked = []
+
+    def known(_steps, of):
+        asked.append(of.final)
+        return of.final
+
+    monkeypatch.setattr(challenge, 'without_unit', known)
+    challenged = challenge.Challenge(steps, {})
+    challenged.of(replace(search, states=[*search.states]))
+    challenged.of(replace(search, states=[*search.states]))
+    assert len(asked) == 1
