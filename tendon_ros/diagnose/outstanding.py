@@ -55,13 +55,13 @@ def stands_out_in_time(problem: Problem, without: Fit, state: Fit, event: Candid
         for rows in (then, now)
     )
     elsewhere = [
-        mean
+        _means(power, count, own, round(seconds / s.period))
         for s, (power, count), own in zip(segments, now, happens, strict=True)
-        for mean in _means(power, count, own, round(seconds / s.period))
     ]
-    if not elsewhere:
+    means = np.concatenate(elsewhere)
+    if not means.size:
         return False
-    most = max(NOISE, *elsewhere)
+    most = max(NOISE, float(means.max()))
     return before > STANDS_OUT * most and after <= most
 
 
@@ -81,12 +81,12 @@ def _power(problem: Problem, left: FloatArray) -> list[tuple[FloatArray, FloatAr
     return found
 
 
-def _means(power: FloatArray, count: FloatArray, happens: BoolArray, bins: int) -> list[float]:
+def _means(power: FloatArray, count: FloatArray, happens: BoolArray, bins: int) -> FloatArray:
     """Return the means of all stretches of so many bins beside an event that tell anything."""
     if not 0 < bins <= len(power):
-        return []
+        return np.zeros(0)
     window = np.ones(bins)
     rows = power, count, happens.astype(np.float64)
     own, known, event = (np.convolve(row, window, mode='valid') for row in rows)
     tells = (event < 0.5) & (known > TOLD * bins * count.max(initial=0.0))
-    return [float(mean) for mean in own[tells] / known[tells]]
+    return np.asarray(own[tells] / known[tells], dtype=np.float64)

@@ -19,7 +19,7 @@ from tendon_ros.nodes.broadcast import Broadcast
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.estimator import PROGRAM
-from tendon_ros.nodes.settings import Value
+from tendon_ros.nodes.settings import names_in, Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 type Message = JointState | WrenchStamped
@@ -52,7 +52,7 @@ class EstimatorNode(TendonNode):
             'compile for some twenty seconds'
         )
         start = time.monotonic()
-        channels = [c for part in str(values['channels']).split(',') if (c := part.strip())]
+        channels = names_in(values['channels'])
         self._observer: Observer = build_observer(
             instrument,
             self._method,

@@ -22,7 +22,7 @@ from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.drops import Drops
 from tendon_ros.nodes.parameter_census import ParameterCensus
 from tendon_ros.nodes.recorder import PROGRAM
-from tendon_ros.nodes.settings import Value
+from tendon_ros.nodes.settings import names_in, Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 #: topics of the instrument beside those that carry channels; the last two are commands
@@ -70,7 +70,7 @@ class RecorderNode(TendonNode):
         )
         own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
         self._own = frozenset(own)
-        asked = [t for part in str(values['topics']).split(',') if (t := part.strip())]
+        asked = names_in(values['topics'])
         self._extra = {self.resolve_topic_name(topic) for topic in asked} - own.keys()
         for topic, kind in {**own, **SYSTEM}.items():
             self._subscribe(topic, kind)

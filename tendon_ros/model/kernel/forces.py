@@ -142,6 +142,13 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
             w[STATE_T + z] = -w[BUDGET + i]
 
 
+def given_by(m: Floats, j: int, torque: float) -> tuple[float, float]:
+    """Return the torque that motor j gives, and how much of its gain its limit lets through."""
+    asked = m[MOTOR_GAIN + j] * torque
+    given, part = limited(asked, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
+    return given + m[MOTOR_BIAS + j], part
+
+
 def drive(m: Floats, d: Ints, w: Floats, s: Floats, c: Floats, t: float, at: int) -> None:
     """Set the motors' torques where the controller acts continuously, and the torque signals."""
     for j in range(U):
@@ -159,9 +166,7 @@ def drive(m: Floats, d: Ints, w: Floats, s: Floats, c: Floats, t: float, at: int
         )
         torque = clipped(wish, -m[LIMIT + j], m[LIMIT + j])
         c[COMMAND + j] = torque
-        asked = m[MOTOR_GAIN + j] * torque
-        given, part = limited(asked, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
-        w[INPUT + i] = given + m[MOTOR_BIAS + j]
+        w[INPUT + i], part = given_by(m, j, torque)
         free = wish == torque and part > 0.0
         gain = m[MOTOR_GAIN + j] * part if free else 0.0
         w[TORQUE_T + i] -= gain * m[KP + j]

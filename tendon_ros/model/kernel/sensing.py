@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from tendon_ros.model.kernel.events import state_at
-from tendon_ros.model.kernel.forces import evaluate, prescribe
-from tendon_ros.model.kernel.loops import clipped, limited
+from tendon_ros.model.kernel.forces import evaluate, given_by, prescribe
+from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
     ACCELERATION, AHEAD, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
     Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
-    MOTOR_BIAS, MOTOR_GAIN, MOTOR_KNEE, MOTOR_LIMIT, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
+    MOTOR_BIAS, MOTOR_GAIN, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
     READINGS, REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
     SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SENSORS,
     SIDE, START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
@@ -174,9 +174,7 @@ def control(
         if torque == wish:  # the integral rests while the limit holds
             c[SUM + j] = total
         c[COMMAND + j] = torque
-        asked = m[MOTOR_GAIN + j] * torque
-        given, _ = limited(asked, m[MOTOR_LIMIT + j], m[MOTOR_KNEE + j])
-        applied = given + m[MOTOR_BIAS + j]
+        applied, _ = given_by(m, j, torque)
         w[TORQUE + i] += applied - w[INPUT + i]
         w[INPUT + i] = applied
         if g[MODE + i] == 0:
