@@ -13,7 +13,7 @@ from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, excused, is_polled
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.free_unit import without_unit
+from tendon_ros.diagnose.left_out import left_out, sets_the_unit
 from tendon_ros.diagnose.one_body import divide, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
@@ -57,7 +57,6 @@ class Challenge:
         # whom to ask when a cause that has stood is asked again, since another one was replaced
         self._near: dict[Candidate, list[Candidate]] = {}
         self._seen = seen
-        self._unit_known = False
 
     def of(self, found: Found, *, brief: bool = False) -> None:
         """
@@ -124,12 +123,6 @@ class Challenge:
             self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
         ]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
-        # once: who comes back in another's place stays
-        known = None if self._unit_known else without_unit(self._steps, found)
-        if known is not None:
-            self._unit_known = True
-            found.states[-1], self._stood = known, {}
-            self.of(found, brief=brief)
 
     def _converged(self, found: Found) -> bool:
         """
@@ -218,8 +211,7 @@ class Challenge:
         state = found.final
         if len(state.model.causes) == 1:
             return found.start
-        known = self._problem.slopes(state)
-        fit = self._problem.fitted(state.model.without(k), known, rounds=8, accuracy=1e-3)
+        fit = left_out(self._problem, state, k, rounds=8, accuracy=1e-3)
         if math.isfinite(fit.cost):
             return fit
         cause = state.model.causes[k]
@@ -234,8 +226,15 @@ class Challenge:
         rivals: Sequence[Rival],
         brief: bool,
     ) -> Fit | None:
-        """Return a fit with another candidate: one that fits better, or as well and is simpler."""
+        """
+        Return a fit with another candidate: one that fits better, or as well and is simpler.
+
+        Or with none, where the machine in another unit does as well.
+        """
         state = found.final
+        k = state.model.causes.index(cause)
+        if sets_the_unit(self._problem, state.model, k) and as_good(self._problem, without, state):
+            return without
 
         def wins(rival: Candidate, fit: Fit) -> bool:
             more = len(rival.parameters) - len(cause.parameters)
