@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tendon_ros.diagnose.bent import at_once
-from tendon_ros.diagnose.guesses import far_off, under_way
+from tendon_ros.diagnose.guesses import better, far_off, under_way
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Steps
 from tendon_ros.diagnose.worth import LEAST, stands_out, worthwhile
 from tendon_ros.identify.fit import Fit
@@ -71,17 +71,17 @@ class Round:
             self._steps.settled(model, self.problem.slopes(state)),
             state.model.causes,
         )
+        fits = [fit]
+        promised = max(m.proposal.gain for m in members)
         if not state.model.causes:
-            fit = self._simplest(before, state, proposals, fit)
-        elif not self.believes(before, fit):
-            # first order hardly tells the last of many: see which one fits
+            fits = [self._simplest(before, state, proposals, fit)]
+        elif not self.believes(before, fit) or fit.cost > state.cost - promised:
+            # first order hardly tells the last of many, and one of them may lead all others
+            # astray: see which one fits
             alone = self.alone(state, proposals)
-            fit = (
-                fit
-                if alone is None
-                else self._steps.pruned(self._start, alone, state.model.causes)
-            )
-        return fit if self.believes(before, fit) else None
+            if alone is not None:
+                fits.append(self._steps.pruned(self._start, alone, state.model.causes))
+        return better(self.problem, *(fit for fit in fits if self.believes(before, fit)))
 
     def believes(self, before: Fit, fit: Fit) -> bool:
         """
