@@ -46,6 +46,8 @@ class Memory:
         digest = hashlib.sha256(f'{__version__} {sorted(withhold)}'.encode())
         digest.update(text_of(instrument).encode())
         for recording in recordings:
+            # what happened in one recording only is remembered by its name
+            digest.update(recording.name.encode())
             for name, channel in sorted(recording.channels.items()):
                 digest.update(name.encode())
                 digest.update(channel.time.tobytes())

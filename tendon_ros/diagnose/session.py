@@ -43,7 +43,7 @@ from tendon_ros.diagnose.spread import known_words, loose
 from tendon_ros.diagnose.unexplained import left_over, surprising
 from tendon_ros.diagnose.worth import beyond_laws, hopeless, worthwhile
 from tendon_ros.identify.candidate import Candidate, everyone
-from tendon_ros.identify.driving import as_recorded, said_of_torque
+from tendon_ros.identify.driving import as_recorded, said_of_torque, with_encoders
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
@@ -146,7 +146,8 @@ def diagnose(
     ahead: tuple[NextExperiment, ...] = ()
     if plan and verdict != 'no_gap':
         names = sorted(measured)
-        ahead = next_experiments(instrument, names, problem, found, held, jobs, patience, report)
+        rig = with_encoders(instrument, given)
+        ahead = next_experiments(rig, names, problem, found, held, jobs, patience, report)
     moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))
     diagnosis = Diagnosis(
         verdict=verdict,

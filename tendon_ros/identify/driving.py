@@ -90,6 +90,18 @@ def as_recorded(instrument: Instrument, channels: Container[str]) -> Instrument:
     return replace(instrument, sensors=tuple(s for s in instrument.sensors if s.name not in gone))
 
 
+def with_encoders(recorded: Instrument, given: Instrument) -> Instrument:
+    """
+    Return an instrument with the motor encoders that nobody recorded: by them it is controlled.
+
+    :param recorded: from :func:`as_recorded`, whatever became of it.
+    :param given: what it was before.
+    :return: the same with all sensors.
+    """
+    known = {s.name: s for s in recorded.sensors}
+    return replace(recorded, sensors=tuple(known.get(s.name, s) for s in given.sensors))
+
+
 def said_of_torque(instrument: Instrument) -> list[str]:
     """
     Say which motors had no position to drive the model with.

@@ -16,6 +16,7 @@ import math
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.axis import Axis
+from tendon_ros.identify.driving import as_recorded, Drive, drives
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation_channel import channels, Sensed
 from tendon_ros.identify.excitation_evidence import CYCLES, Evidence
@@ -68,7 +69,8 @@ def separating(
     """
     Return the experiments that would tell explanations apart.
 
-    :param instrument: the file, with the effects that are settled.
+    :param instrument: the file, with the effects that are settled, and with the encoders by which
+        its motors are controlled, recorded or not.
     :param measured: names of the channels that were recorded.
     :param pairs: what recordings could not tell apart: the one that is taken to hold, and the one
         that imitates it; None in its place for the file as it is.
@@ -76,9 +78,11 @@ def separating(
     :param effort: where what it costs is counted, if anywhere.
     :return: for each pair each motion with each channel, best first.
     :raises EffectError: where an effect cannot act at its place.
-    :raises RecordingError: where a motor has no encoder.
+    :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
-    sensed = channels(instrument, measured)
+    # what drives a model of the recordings drives one of the experiment
+    driving = drives(as_recorded(instrument, measured))
+    sensed = channels(instrument, driving, measured)
     contacts = [contact_place(instrument, c) for c in instrument.contacts]
     movable = [
         *tolerances(instrument),
@@ -94,7 +98,9 @@ def separating(
         motions = [m for m in pool.map(partial(fitting, instrument), wished) if m is not None]
         tasks = [(motion, group) for group in rivals.values() for motion in motions]
         counted = effort or Effort()
-        tried = pool.map(lambda task: _tried(instrument, sensed, movable, counted, *task), tasks)
+        tried = pool.map(
+            lambda task: _tried(instrument, driving, sensed, movable, counted, *task), tasks
+        )
         return sorted((s for found in tried for s in found), key=lambda s: s.order)
 
 
@@ -123,6 +129,7 @@ def together(suggestions: Sequence[Suggestion]) -> list[Suggestion]:
 
 def _tried(
     instrument: Instrument,
+    driving: Sequence[Drive],
     sensed: Sequence[Sensed],
     movable: Sequence[Tolerance],
     effort: Effort,
@@ -132,7 +139,7 @@ def _tried(
     """Return what one motion tells of pairs with the same first explanation."""
     found = []
     try:
-        trial = Trial(instrument, sensed, movable, motion, pairs[0][0], effort)
+        trial = Trial(instrument, driving, sensed, movable, motion, pairs[0][0], effort)
         for truth, rival in pairs:
             rounds = trial.evidence(rival)
             names = [(e[0].effect, e[0].place) for e in (truth, rival) if e is not None]

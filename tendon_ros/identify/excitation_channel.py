@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import channel_name
-from tendon_ros.identify.driving import motor_channels
+from tendon_ros.identify.driving import Drive
 from tendon_ros.model.instrument import Instrument, Sensor
 from tendon_ros.model.rows import Rows
 
@@ -61,16 +61,18 @@ class Sensed:
         return f'the sensor {self.sensor.name}'
 
 
-def channels(instrument: Instrument, measured: Sequence[str]) -> list[Sensed]:
+def channels(
+    instrument: Instrument, driving: Sequence[Drive], measured: Sequence[str]
+) -> list[Sensed]:
     """
     Return every channel that could be compared with the model.
 
     :param instrument: the network.
+    :param driving: what drives the model.
     :param measured: channels that the recordings have.
-    :return: the channels, without the motors' encoders: they drive the model.
-    :raises RecordingError: where a motor has no encoder.
+    :return: the channels, without those that drive the model.
     """
-    drive = motor_channels(instrument)
+    drive = {d.sensor.channel for d in driving}
     found = [
         Sensed(_noisy(instrument, s), 'measured' if s.channel in measured else 'silent', n)
         for n, s in enumerate(instrument.sensors)

@@ -1,8 +1,9 @@
 """
 Experiments tried on the model: a rig in which one explanation holds performs a motion.
 
-The controllers of the file turn the command into the motors' motion. Driven along it, the model
-gives what every channel would say under any other explanation, as it does in a diagnosis.
+The controllers of the file turn the command into the motors' motion. Driven along it, or by the
+torques where no motion was recorded, the model gives what every channel would say under any other
+explanation, as it does in a diagnosis.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate, Values
-from tendon_ros.identify.driving import motor_channels
+from tendon_ros.identify.driving import Drive
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
@@ -28,6 +29,7 @@ from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.limiting import given_by
 from tendon_ros.model.numbers import Numbers
+from tendon_ros.model.rows import Rows
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import along, follow
 
@@ -63,6 +65,7 @@ class Trial:
     One motion on a rig in which one explanation holds.
 
     :param instrument: the file; its own effects are always in force.
+    :param driving: what drives the model.
     :param sensed: the channels that are looked at.
     :param tolerances: what else may move.
     :param motion: the motion.
@@ -75,6 +78,7 @@ class Trial:
     def __init__(
         self,
         instrument: Instrument,
+        driving: Sequence[Drive],
         sensed: Sequence[Sensed],
         tolerances: Sequence[Tolerance],
         motion: Motion,
@@ -82,18 +86,19 @@ class Trial:
         effort: Effort,
     ) -> None:
         self._effort = effort
+        # motions come first, as in a recording
+        self._driving = sorted(driving, key=lambda d: d.by_torque)
         self._base = touching(instrument, motion)
         self._sensed = tuple(sensed)
         self._truth = _again(*truth)
         rig = replace(self._base, effects=in_force(self._base.effects, [self._truth]))
         rows, period = performed(rig, motion.trajectory(instrument.motor_names))
-        names = [s.channel for s in instrument.sensors]
-        angles = rows.reading[:, [names.index(c) for c in motor_channels(instrument)]].T
+        known = self._driven_by(rows)
         self._used = slice(round(SETTLING / period), -max(1, round(ENDING / period)))
-        self._drive = self._driven(angles, rows.effort, period)
+        self._drive = self._driven(known, rows.effort, period)
         self._said = self._predicted([self._truth])
         plain = self._predicted([])
-        counted = self._predicted([self._truth], self._counted(instrument, angles, period))
+        counted = self._predicted([self._truth], self._counted(known, period))
         own = np.array([[row_noise(s.sensor)] for s in sensed])
         shaken = PER_COUNT * np.mean((counted - self._said) ** 2, axis=1, keepdims=True)
         self._noise = np.sqrt(own**2 + shaken)
@@ -175,32 +180,48 @@ class Trial:
             for c in range(len(self._sensed))
         ]
 
-    def _driven(self, angles: FloatArray, reported: FloatArray, period: float) -> _Drive:
-        bins = angles.shape[1]
+    def _driven_by(self, rows: Rows) -> FloatArray:
+        """Return what a recording has of that which drives the model, shape (drives, rows)."""
+        names = [s.name for s in self._base.sensors]
+        motors = self._base.motor_names
+        return np.array(
+            [
+                rows.effort[:, motors.index(d.motor)]
+                if d.by_torque
+                else rows.reading[:, names.index(d.sensor.name)]
+                for d in self._driving
+            ]
+        )
+
+    def _driven(self, known: FloatArray, reported: FloatArray, period: float) -> _Drive:
+        bins = known.shape[1]
+        by_torque = [d.by_torque for d in self._driving]
+        # torques alone may jump, and must not ring
+        signals = Signals.through if all(by_torque) else Signals.smooth
         segment = Segment(
             name='experiment',
             period=period,
             time=period * np.arange(bins, dtype=np.float64),
-            prescribed=self._base.driven,
-            motion=Signals.smooth(0.0, period, angles),
+            prescribed=tuple(d.pulley for d in self._driving if not d.by_torque),
+            pushed=tuple(d.pulley for d in self._driving if d.by_torque),
+            motion=signals(0.0, period, known),
             measured=(),
             contacts=tuple(c.name for c in self._base.contacts if c.enabled),
             pose={},
         )
         return _Drive(segment, reported)
 
-    def _counted(self, instrument: Instrument, angles: FloatArray, period: float) -> _Drive:
+    def _counted(self, known: FloatArray, period: float) -> _Drive:
         """Return the motion as it is known from the motors' counts."""
         rows = []
-        known = np.ones(angles.shape[1], dtype=np.bool_)
-        sensors = {s.channel: s for s in instrument.sensors}
-        for angle, name in zip(angles, motor_channels(instrument), strict=True):
-            count = sensors[name].resolution
-            if count > 0.0:
-                seen = count * np.round(angle / count)
-                rows.append(smoothed(seen, known, count / np.sqrt(12.0), count))
+        whole = np.ones(known.shape[1], dtype=np.bool_)
+        for row, drive in zip(known, self._driving, strict=True):
+            count = drive.sensor.resolution
+            if count > 0.0 and not drive.by_torque:
+                seen = count * np.round(row / count)
+                rows.append(smoothed(seen, whole, count / np.sqrt(12.0), count))
             else:
-                rows.append(angle)
+                rows.append(row)
         return self._driven(np.array(rows), self._drive.reported, period)
 
     def _predicted(self, uses: Sequence[EffectUse], drive: _Drive | None = None) -> FloatArray:
@@ -209,7 +230,8 @@ class Trial:
         instrument = replace(self._base, control_period=drive.segment.period)
         effects = in_force(self._base.effects, uses)
         segment = drive.segment
-        arrays = along(instrument, segment.prescribed, tolerance=ACCURACY).arrays(effects)
+        layout = along(instrument, segment.prescribed, segment.pushed, ACCURACY)
+        arrays = layout.arrays(effects)
         motion = true_motion(instrument, arrays.numbers, segment)
         rows = follow(instrument, arrays, motion, len(segment.time) - 1)
         self._effort.spend(rows.steps, len(segment.time))

@@ -9,7 +9,13 @@ from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose.intake.commands import lines
 from tendon_ros.identify.binning import bin_length
-from tendon_ros.identify.driving import as_recorded, drives, encoder_channels, motor_channels
+from tendon_ros.identify.driving import (
+    as_recorded,
+    drives,
+    encoder_channels,
+    motor_channels,
+    with_encoders,
+)
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import segment_of
 from tendon_ros.model.instrument import EffectUse
@@ -50,6 +56,17 @@ def test_what_was_not_recorded_does_not_drive(belt):
 
 def test_what_was_recorded_stays(bench):
     assert as_recorded(bench, motor_channels(bench)) == bench
+
+
+def test_encoders_that_nobody_recorded_come_back_to_control_an_experiment(bench):
+    torques = [s.channel for s in bench.sensors if s.kind == 'motor_torque']
+    recorded = as_recorded(bench, torques)
+    assert [d.by_torque for d in drives(recorded)] == [True, True]
+    found_out = replace(recorded.sensors[0], noise=1.0)
+    known = replace(recorded, sensors=(found_out, *recorded.sensors[1:]))
+    rig = with_encoders(known, bench)
+    assert [s.name for s in rig.sensors] == [s.name for s in bench.sensors]
+    assert found_out in rig.sensors
 
 
 def test_without_either_nothing_drives(bench):

@@ -8,7 +8,13 @@ import pytest
 from tendon_ros.base.errors import EffectError
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import as_recorded, drives
+from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation import separating, together
+from tendon_ros.identify.excitation_channel import channels
+from tendon_ros.identify.excitation_motion import library
+from tendon_ros.identify.excitation_rig import fitting, performed, reaches, touching
+from tendon_ros.identify.excitation_trial import Trial
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import segment_of, SETTLING
@@ -137,3 +143,18 @@ def test_one_experiment_for_several_pairs(rig, found):
 def test_a_place_where_nothing_can_act(rig):
     with pytest.raises(EffectError, match='no place'):
         separating(rig, MOTORS, [((Candidate('pretension', 'cable_x'), {'scale': 0.8}), None)])
+
+
+def test_where_no_position_is_recorded_the_torques_move_the_model_as_the_rig_moves():
+    belt = load_instrument('belt_by_voltage')
+    seen = [s.channel for s in belt.sensors if s.kind != 'angle']
+    driving = drives(as_recorded(belt, seen))
+    assert all(d.by_torque for d in driving)
+    sensed = channels(belt, driving, seen)
+    motion = fitting(belt, library(belt, reaches(belt))[0])
+    truth = (Candidate('coulomb_friction', 'pulley_left'), {'torque': 2e-3})
+    trial = Trial(belt, driving, sensed, tolerances(belt), motion, truth, Effort())
+    rig = replace(touching(belt, motion), effects=(truth[0].use(truth[1]),))
+    rows, _ = performed(rig, motion.trajectory(belt.motor_names))
+    for channel, said in zip(sensed, trial._said, strict=True):
+        assert np.std(said) == pytest.approx(np.std(channel.reading(rows)), rel=0.1)
