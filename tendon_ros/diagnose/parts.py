@@ -10,19 +10,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.segment import Segment
+
+BoolArray = NDArray[np.bool_]
 
 #: part of a simple effect by which a fit begins to see whether there is more to it
 LITTLE = 0.2
 #: part of the time in which a pulley turns no faster than what counts as seen
 OFTEN = 0.95
-#: part by which friction differs at least if it is to be more than a plain one
-PLAIN = 0.1
+#: part by which friction differs at least if it is to be more than a plain one; and the part that
+#: it holds more with, where nothing turned slowly enough to show that it falls: a motor that rests
+#: within a count holds a little more or less with any friction
+PLAIN, HOLDS_MORE = 0.1, 0.2
 
 
 def simpler(
@@ -88,25 +94,44 @@ def plain(problem: Problem, model: Model, k: int) -> tuple[Candidate, dict[str, 
     effect = find(cause.effect)
     if not effect.holds or effect.law is None or cause.given:
         return None
-    names = [p.name for p in problem.rollouts.instrument.pulleys]
-    column = names.index(cause.place.removeprefix('pulley_'))
+    pulley = cause.place.removeprefix('pulley_')
+    column = problem.rollouts.instrument.index(pulley)
     try:
         states = problem.rollouts.states(problem.uses(model))
     except SimulationError:
         return None
-    speeds = np.concatenate([s.velocity[:, column] for s in states])
+    speeds = np.concatenate(
+        [
+            rows.velocity[~_still(segment, pulley), column]
+            for rows, segment in zip(states, problem.rollouts.segments, strict=True)
+        ]
+    )
     values = list(model.values(k).values())
-    seen = [
-        effect.law(float(np.quantile(way, part)), side, 0.0, *values)[0]
+    ways = [
+        (way, side)
         for way, side in ((speeds[speeds > 0.0], 1.0), (-speeds[speeds < 0.0], -1.0))
         if len(way)
+    ]
+    seen = [
+        effect.law(float(np.quantile(way, part)), side, 0.0, *values)[0]
+        for way, side in ways
         for part in (0.0, OFTEN)
     ]
     if not seen or max(seen) - min(seen) > PLAIN * max(seen):
         return None
+    held = max(effect.law(0.0, side, 0.0, *values)[0] for _, side in ways)
+    if held > (1.0 + HOLDS_MORE) * max(seen):
+        return None
     [name] = effect.holds
     [size] = [p.name for p in find(name).parameters]
     return Candidate(name, cause.place), {size: float(np.mean(seen))}
+
+
+def _still(segment: Segment, pulley: str) -> BoolArray:
+    """Return where a pulley cannot be told from rest, shape (bins,); nowhere if nobody sees it."""
+    if pulley in segment.prescribed:
+        return segment.still[segment.prescribed.index(pulley)]
+    return np.zeros(len(segment.time), dtype=np.bool_)
 
 
 def as_one(model: Model) -> Model:

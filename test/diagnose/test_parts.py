@@ -4,7 +4,9 @@ import pytest
 
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.parts import as_one, plain, simpler
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 BENT = [
     ('asymmetric_friction', {'forward': 0.2, 'backward': 0.21}, {'torque': 0.205}),
@@ -86,6 +88,29 @@ def test_a_law_of_which_nothing_was_seen_is_the_simple_one(sound_problem, effect
         cause, parameters = found
         assert (cause.effect, cause.place) == ('coulomb_friction', 'pulley_3')
         assert parameters == pytest.approx({'torque': torque}, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ('static', 'speed', 'named'),
+    [
+        (0.02, 2e-3, True),
+        # it holds with far more than it slides with, or its fall is seen in motion
+        (0.1, 2e-3, False),
+        (0.02, 0.2, False),
+    ],
+)
+def test_what_falls_before_a_motor_is_seen_to_move_is_plain_if_it_is_little(
+    measured_on, static, speed, named
+):
+    body = load_instrument('single_body')
+    run = measured_on(body, trajectory='minimum_jerk', settings=(('amplitude', '40 deg'),))
+    problem = prepared([run], body).problem
+    values = {'static': static, 'sliding': 0.1, 'speed': speed}
+    model = problem.empty.joined(Candidate('stribeck_friction', 'pulley_body'), values)
+    found = plain(problem, model, 0)
+    assert (found is not None) == named
+    if found:
+        assert found[1] == pytest.approx({'torque': 0.1}, rel=0.03)
 
 
 def test_friction_of_the_file_stays_beside_another(sound_problem):
