@@ -17,6 +17,9 @@ from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
 
+#: noise deviations by which a model is off that diverges: a number, so that all can read it
+DIVERGED = 1e9
+
 
 @dataclass(frozen=True)
 class Off:
@@ -92,7 +95,7 @@ def beyond_noise(off: float, noise: float) -> float:
 
 def offs(problem: Problem, model: Model) -> dict[str, Off]:
     """
-    Return how far a model is off.
+    Return how far a model is off, by :data:`DIVERGED` where it diverges.
 
     :param problem: the bins that count.
     :param model: the model.
@@ -106,6 +109,7 @@ def offs(problem: Problem, model: Model) -> dict[str, Off]:
             if not mask.any():
                 continue
             off = (measured.value - predicted[n][c])[mask]
+            off = np.where(np.isfinite(off), off, DIVERGED * measured.noise[mask])
             block = np.floor(segment.time[mask] / BLOCK) + 1e4 * n
             parts.setdefault(measured.sensor.channel, []).append(
                 (off**2, (off / measured.noise[mask]) ** 2, block)
