@@ -82,6 +82,8 @@ def test_other_inputs_do_not_use_it(interrupted, body, run):
     assert Memory(interrupted, [other], body).models() == []
     assert Memory(interrupted, [run, other], body).models() == []
     assert Memory(interrupted, [run], heavier).models() == []
+    # what happened in one recording is remembered by its name
+    assert Memory(interrupted, [replace(run, name='other')], body).models() == []
     assert Memory(interrupted, [run], body, ['backlash']).models() == []
 
 
