@@ -122,16 +122,10 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     # a motor and the pulley that it turns are one place
     body = turned(problem.rollouts.instrument)
     places = {body.get(cause.place, cause.place) for cause in gone}
-    does = [change(problem, final, k) for k, cause in enumerate(causes) if cause in gone]
-
-    def alike(k: int) -> float:
-        # only of a dry friction is it known how its law is wrong
-        if not causes[k].dry:
-            return 1.0
-        return imitable(problem, np.sum(does, axis=0), change(problem, final, k))
-
+    own = [change(problem, final, k) for k, cause in enumerate(causes) if cause in gone]
+    does = np.sum(own, axis=0)
     kept = [
-        power * alike(k)
+        power * imitable(problem, final, k, does)
         for k, (cause, power) in enumerate(zip(causes, wrong, strict=True))
         if cause not in gone and body.get(cause.place, cause.place) in places
     ]
