@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-import csv
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-import json
+from functools import partial
 from pathlib import Path
 from typing import Any
-import zipfile
 
 import numpy as np
 from numpy.lib.npyio import NpzFile
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 import scipy.io
 
 from tendon_ros.bags.mapping import Runs
+from tendon_ros.bags.text_columns import read_csv, read_json
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import FloatArray
 
@@ -71,41 +71,63 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
     """
     if not path.is_file():
         raise RecordingError(f'{path}: no such file; give the file to import')
-    try:
-        arrays: Mapping[str, Any]
-        if kind == 'csv':
-            columns, faults = _read_csv(path)
-            return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
-        if kind == 'json':
-            columns, faults = _read_json(path)
-            return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
+    found = _whole(path, kind) if kind in ('csv', 'json') else _parts(path, kind, runs)
+
+    def reader(read: Callable[[], Table]) -> Callable[[], Table]:
+        def table() -> Table:
+            with _explained(path, kind):
+                return read()
+
+        return table
+
+    return {key: reader(read) for key, read in found.items()}
+
+
+def _whole(path: Path, kind: str) -> dict[str, Callable[[], Table]]:
+    """Return the one run of a file of text, which is read at once."""
+    with _explained(path, kind):
+        columns, faults = read_csv(path) if kind == 'csv' else read_json(path)
+    return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
+
+
+def _parts(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[[], Table]]:
+    """Return the runs of a file of arrays."""
+    arrays: Mapping[str, Any]
+    with _explained(path, kind):
         if kind == 'npz':
             arrays = _Npz(path)
         else:
             found = scipy.io.loadmat(path, squeeze_me=True)
             arrays = {name: value for name, value in found.items() if not name.startswith('__')}
-        names = list(arrays)
-    except (OSError, ValueError, TypeError, NotImplementedError, zipfile.BadZipFile) as error:
-        detail = ' '.join(str(error).split())
-        raise RecordingError(
-            f'{path}: not readable as {kind} ({detail}); check the format in the mapping'
-        ) from error
     if runs is None:
         return {path.stem: lambda: _one_run(path, arrays)}
     keys = [
         name
-        for name in names
+        for name in arrays
         if fnmatchcase(name, runs.include) and not fnmatchcase(name, runs.exclude)
     ]
     if not keys:
         raise RecordingError(
-            f'{path}: no run matches runs.include {runs.include!r}; it has {listed(names)}'
+            f'{path}: no run matches runs.include {runs.include!r}; it has {listed(arrays)}'
         )
+    return {key: partial(_run, path, arrays, key, runs) for key in keys}
 
-    def reader(key: str) -> Callable[[], Table]:
-        return lambda: _run(path, arrays, key, runs)
 
-    return {key: reader(key) for key in keys}
+@contextmanager
+def _explained(path: Path, kind: str) -> Iterator[None]:
+    """Turn what the libraries raise on a damaged file, which is nearly anything, into one line."""
+    try:
+        yield
+    except RecordingError:
+        raise
+    except PermissionError as error:
+        raise RecordingError(f'{path}: may not be read ({error.strerror}); allow it') from error
+    except Exception as error:
+        detail = ' '.join(str(error).split()).rstrip('.') or type(error).__name__
+        raise RecordingError(
+            f'{path}: not readable as {kind} ({detail}); check that the file is whole, and the '
+            'format in the mapping'
+        ) from error
 
 
 class _Npz(Mapping[str, Any]):
@@ -124,7 +146,11 @@ class _Npz(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         with self._open() as arrays:
-            return arrays[name]
+            try:
+                return arrays[name]
+            except ValueError:
+                # Python objects would have to be unpickled, which runs whatever the file says.
+                return np.empty(0, dtype=np.object_)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -166,98 +192,6 @@ def _run(path: Path, arrays: Mapping[str, Any], key: str, runs: Runs) -> Table:
             f'{path}: {key} has the shape {table.shape}; a run is a table, narrow runs.include'
         )
     name = runs.header.replace('{key}', key)
-    header = str(np.asarray(arrays[name])) if name and name in arrays else ''
+    text = np.asarray(arrays[name] if name and name in arrays else '')
+    header = str(text) if text.size else ''
     return Table(key, {str(i): table[:, i] for i in range(table.shape[1])}, header)
-
-
-#: what may stand between the cells of a CSV file; commas, which are decimal signs too, last
-DELIMITERS = ';\t,'
-#: rows that tell what it is
-LOOKED_AT = 20
-
-
-def _read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
-    """
-    Return the columns of a CSV file, and what is wrong with those that hold more than numbers.
-
-    They are named by the first line where a cell of it is anything but empty or a number. Between
-    semicolons or tabs, a comma is taken for the decimal sign.
-    """
-    with path.open(newline='', encoding='utf-8-sig') as stream:
-        lines = [line for line in stream if line.strip() and not line.startswith('#')]
-    if not lines:
-        raise ValueError('it is empty')
-    delimiter = _delimiter(lines[:LOOKED_AT])
-    rows = list(csv.reader(lines, delimiter=delimiter))
-    comma = '' if delimiter == ',' else ','
-    try:
-        [_number(cell, comma) for cell in rows[0] if cell.strip()]
-        names, first = [str(i) for i in range(len(rows[0]))], 0
-    except ValueError:
-        names, first = [cell.strip() for cell in rows[0]], 1
-    if len(set(names)) < len(names):
-        raise ValueError('two columns have the same name')
-    table = np.full((len(rows) - first, len(names)), np.nan)
-    faults: dict[str, str] = {}
-    for i, row in enumerate(rows[first:]):
-        if len(row) != len(names):
-            raise ValueError(f'row {i + first + 1} has {len(row)} cells for {len(names)} columns')
-        for j, cell in enumerate(row):
-            if cell.strip():
-                try:
-                    table[i, j] = _number(cell, comma)
-                except ValueError:
-                    fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
-                    faults.setdefault(names[j], fault)
-    return {name: table[:, j] for j, name in enumerate(names)}, faults
-
-
-def _delimiter(lines: Sequence[str]) -> str:
-    """Return what stands between the cells: what makes rows of one length, longer than one."""
-    present = [d for d in DELIMITERS if d in lines[0]]
-    for delimiter in present:
-        lengths = {len(row) for row in csv.reader(lines, delimiter=delimiter)}
-        if len(lengths) == 1 and lengths != {1}:
-            return delimiter
-    return present[0] if present else ','
-
-
-def _read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
-    """
-    Return the columns of a JSON file, and what is wrong with those that hold more than numbers.
-
-    The samples are the longest list of objects in the file, or the longest lists of numbers in it.
-    A sample that lacks a column, or has null in it, was not taken there.
-    """
-    document = json.loads(path.read_text(encoding='utf-8-sig'))
-    parts = list(document.values()) if isinstance(document, dict) else [document]
-    lists = [part for part in parts if isinstance(part, list) and part]
-    samples = [part for part in lists if all(isinstance(sample, dict) for sample in part)]
-    cells: dict[str, list[Any]]
-    if samples:
-        longest = max(samples, key=len)
-        names = dict.fromkeys(name for sample in longest for name in sample)
-        cells = {name: [sample.get(name) for sample in longest] for name in names}
-    elif isinstance(document, dict) and lists:
-        length = max(map(len, lists))
-        cells = {
-            str(name): part
-            for name, part in document.items()
-            if isinstance(part, list) and len(part) == length
-        }
-    else:
-        raise ValueError('it holds no list of samples')
-    columns: dict[str, FloatArray] = {}
-    faults: dict[str, str] = {}
-    for name, column in cells.items():
-        columns[name] = np.full(len(column), np.nan)
-        for i, cell in enumerate(column):
-            if isinstance(cell, int | float):
-                columns[name][i] = cell
-            elif cell is not None:
-                faults.setdefault(name, f'sample {i}, {name}: {cell!r} is not a number')
-    return columns, faults
-
-
-def _number(cell: str, comma: str) -> float:
-    return float(cell.replace(comma, '.') if comma else cell)

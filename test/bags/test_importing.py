@@ -328,6 +328,55 @@ def test_a_bad_csv_is_one_line(tmp_path, text, words):
         imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
 
 
+def test_python_objects_beside_the_signals_are_left_aside(tmp_path):
+    objects = np.array([{'gain': 3.0}, None], dtype=object)
+    np.savez(tmp_path / 'x.npz', t=TIME * 1e3, motor=COUNTS, settings=objects)
+    (run,) = imported(tmp_path, tmp_path / 'x.npz', changed(**BY_NAME))
+    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    table = np.stack([TIME, COUNTS, COUNTS], axis=1)
+    np.savez(tmp_path / 'runs.npz', **{'1': table, '2': objects, 'hdr_1': objects})
+    (one,) = imported(tmp_path, tmp_path / 'runs.npz', MAPPING, ['1'])
+    assert 'source_header' not in one.metadata
+    with pytest.raises(RecordingError, match='2 holds object, not numbers; map another'):
+        imported(tmp_path, tmp_path / 'runs.npz', MAPPING)
+
+
+def damaged_npz(path):
+    np.savez(path, t=TIME * 1e3, motor=COUNTS)
+    data = bytearray(path.read_bytes())
+    data[200] ^= 0xFF  # among the numbers: seen only when they are read
+    path.write_bytes(data)
+
+
+def damaged_mat(path):
+    scipy.io.savemat(path, {'t': np.arange(5000.0), 'motor': COUNTS}, do_compression=True)
+    data = bytearray(path.read_bytes())
+    data[400:500] = b'x' * 100
+    path.write_bytes(data)
+
+
+@pytest.mark.parametrize(
+    ('kind', 'make'),
+    [
+        ('npz', damaged_npz),
+        ('mat', lambda path: path.write_bytes(b'')),
+        ('mat', damaged_mat),
+        ('csv', lambda path: path.write_text('t,motor\n0,"' + '1,2\n' * 50_000)),
+        ('json', lambda path: path.write_text('[' * 100_000)),
+    ],
+    ids=['npz', 'empty mat', 'mat', 'open quote', 'nested'],
+)
+def test_a_damaged_file_is_one_line(tmp_path, kind, make):
+    path = tmp_path / f'x.{kind}'
+    make(path)
+    with pytest.raises(RecordingError) as caught:
+        imported(tmp_path, path, changed(format=kind, **BY_NAME))
+    message = str(caught.value)
+    assert message.startswith(f'{path}: not readable as {kind} (')
+    assert 'check that the file is whole' in message
+    assert '\n' not in message
+
+
 def test_a_missing_file_and_a_missing_mapping(tmp_path):
     with pytest.raises(RecordingError, match='no such file'):
         imported(tmp_path, tmp_path / 'x.npz', MAPPING)

@@ -97,3 +97,12 @@ def test_a_cut_file_names_itself(tmp_path):
 def test_one_file_is_one_run():
     with pytest.raises(ValueError, match='a JSON file is one run'):
         Mapping.model_validate({**mapped().model_dump(), 'runs': {'include': '*'}})
+
+
+def test_a_number_beyond_all_bounds_matters_only_where_it_is_mapped(tmp_path):
+    huge = [{**sample, 'id': 10**400} for sample in samples()]
+    [run] = import_runs(written(tmp_path, huge), mapped())
+    assert run['actuator/pulley_arm/position'].value == pytest.approx(ANGLES)
+    huge[3]['load'] = 10**400
+    with pytest.raises(RecordingError, match='sample 3, load: too large a number; mend it'):
+        list(import_runs(written(tmp_path, huge), mapped()))

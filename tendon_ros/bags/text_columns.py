@@ -1,0 +1,116 @@
+"""Files of text as columns of numbers by name: CSV and JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tendon_ros.base.recording import FloatArray
+
+#: what may stand between the cells of a CSV file; commas, which are decimal signs too, last
+DELIMITERS = ';\t,'
+#: rows that tell what it is
+LOOKED_AT = 20
+
+
+def read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+    """
+    Return the columns of a CSV file, and what is wrong with those that hold more than numbers.
+
+    They are named by the first line where a cell of it is anything but empty or a number. Between
+    semicolons or tabs, a comma is taken for the decimal sign.
+
+    :param path: the file.
+    :return: columns by name, each shape (n,); what is wrong with some of them, by name.
+    :raises ValueError: where it holds no table; the libraries raise others.
+    """
+    with path.open(newline='', encoding='utf-8-sig') as stream:
+        lines = [line for line in stream if line.strip() and not line.startswith('#')]
+    if not lines:
+        raise ValueError('it is empty')
+    delimiter = _delimiter(lines[:LOOKED_AT])
+    rows = list(csv.reader(lines, delimiter=delimiter))
+    comma = '' if delimiter == ',' else ','
+    try:
+        [_number(cell, comma) for cell in rows[0] if cell.strip()]
+        names, first = [str(i) for i in range(len(rows[0]))], 0
+    except ValueError:
+        names, first = [cell.strip() for cell in rows[0]], 1
+    if len(set(names)) < len(names):
+        raise ValueError('two columns have the same name')
+    table = np.full((len(rows) - first, len(names)), np.nan)
+    faults: dict[str, str] = {}
+    for i, row in enumerate(rows[first:]):
+        if len(row) != len(names):
+            raise ValueError(f'row {i + first + 1} has {len(row)} cells for {len(names)} columns')
+        for j, cell in enumerate(row):
+            if cell.strip():
+                try:
+                    table[i, j] = _number(cell, comma)
+                except ValueError:
+                    fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
+                    faults.setdefault(names[j], fault)
+    return {name: table[:, j] for j, name in enumerate(names)}, faults
+
+
+def _delimiter(lines: Sequence[str]) -> str:
+    """Return what stands between the cells: what makes rows of one length, longer than one."""
+    present = [d for d in DELIMITERS if d in lines[0]]
+    for delimiter in present:
+        lengths = {len(row) for row in csv.reader(lines, delimiter=delimiter)}
+        if len(lengths) == 1 and lengths != {1}:
+            return delimiter
+    return present[0] if present else ','
+
+
+def read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+    """
+    Return the columns of a JSON file, and what is wrong with those that hold more than numbers.
+
+    The samples are the longest list of objects in the file, or the longest lists of numbers in it.
+    A sample that lacks a column, or has null in it, was not taken there.
+
+    :param path: the file.
+    :return: columns by name, each shape (n,); what is wrong with some of them, by name.
+    :raises ValueError: where it holds no samples; the libraries raise others.
+    """
+    document = json.loads(path.read_text(encoding='utf-8-sig'))
+    parts = list(document.values()) if isinstance(document, dict) else [document]
+    lists = [part for part in parts if isinstance(part, list) and part]
+    samples = [part for part in lists if all(isinstance(sample, dict) for sample in part)]
+    cells: dict[str, list[Any]]
+    if samples:
+        longest = max(samples, key=len)
+        names = dict.fromkeys(name for sample in longest for name in sample)
+        cells = {name: [sample.get(name) for sample in longest] for name in names}
+    elif isinstance(document, dict) and lists:
+        length = max(map(len, lists))
+        cells = {
+            str(name): part
+            for name, part in document.items()
+            if isinstance(part, list) and len(part) == length
+        }
+    else:
+        raise ValueError('it holds no list of samples')
+    columns: dict[str, FloatArray] = {}
+    faults: dict[str, str] = {}
+    for name, column in cells.items():
+        columns[name] = np.full(len(column), np.nan)
+        for i, cell in enumerate(column):
+            if isinstance(cell, int | float):
+                try:
+                    columns[name][i] = cell
+                except OverflowError:
+                    faults.setdefault(name, f'sample {i}, {name}: too large a number')
+            elif cell is not None:
+                faults.setdefault(name, f'sample {i}, {name}: {cell!r} is not a number')
+    return columns, faults
+
+
+def _number(cell: str, comma: str) -> float:
+    return float(cell.replace(comma, '.') if comma else cell)
