@@ -2,14 +2,18 @@
 Write a rosbag2 as messages come, so that little is lost when the process is killed.
 
 Everything written up to one flush interval ago is on its way to the disk: a complete chunk of the
-MCAP, a committed transaction of the SQLite file. ``tendon recover`` makes a bag of that.
+MCAP, a committed transaction of the SQLite file. ``tendon recover`` makes a bag of that, also
+where the disk is full.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 import json
 from pathlib import Path
+import shutil
+import sqlite3
 from types import TracebackType
 from typing import Literal, Self
 
@@ -22,7 +26,7 @@ from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
 from tendon_ros import __version__
 from tendon_ros.bags.messages import definition_of
 from tendon_ros.bags.qos import offered_qos
-from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.errors import listed, OutputError, RecordingError
 
 Storage = Literal['mcap', 'sqlite3']
 
@@ -41,20 +45,24 @@ CONVENTIONS: Mapping[str, str] = {
 }
 
 _PLUGINS = {'mcap': StoragePlugin.MCAP, 'sqlite3': StoragePlugin.SQLITE3}
+#: how the storages say that the disk refuses
+_REFUSED = (OSError, sqlite3.OperationalError)
 
 
 class BagWriter:
     """
     A rosbag2 of version 9 that is being written; a context manager.
 
-    Leaving the context closes the bag, also on an error: what was recorded stays readable.
+    Leaving the context closes the bag, also on an error: what was recorded stays readable. Where
+    the disk refused something, the bag stays unfinished, as ``tendon recover`` takes it.
 
     :param path: folder of the bag; must not exist.
     :param storage: ``mcap`` or ``sqlite3``.
     :param compress: compress the chunks of an MCAP with zstd; every MCAP reader knows it.
     :param flush_seconds: how much recorded time a killed process may lose [s].
     :param metadata: text to keep in the bag's ``custom_data``.
-    :raises RecordingError: where the bag cannot be created.
+    :raises RecordingError: where there is no such storage.
+    :raises OutputError: where the bag cannot be created.
     """
 
     def __init__(
@@ -74,18 +82,22 @@ class BagWriter:
         self._connections: dict[str, Connection] = {}
         self._metadata = {**(metadata or {}), **CONVENTIONS}
         self._closed = False
+        self._refused = False
         self.counts: dict[str, int] = {}
         try:
             self._writer = Writer(self.path, version=9, storage_plugin=_PLUGINS[storage])
-            if compress and storage == 'mcap':
-                self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+        except (WriterError, OSError) as error:
+            raise self._not_created(error) from error
+        if compress and storage == 'mcap':
+            self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+        try:
             self._writer.open()
             self._save_sidecar()
-        except (WriterError, OSError) as error:
-            raise RecordingError(
-                f'{path}: cannot be created ({error}); give the path of a bag that does not exist '
-                'in a folder that can be written'
-            ) from error
+        except (WriterError, *_REFUSED) as error:
+            self._abort()
+            if not isinstance(error, WriterError):  # which says that another has just made it
+                shutil.rmtree(self.path, ignore_errors=True)
+            raise self._not_created(error) from error
 
     def __enter__(self) -> Self:
         return self
@@ -109,9 +121,13 @@ class BagWriter:
 
         :param key: for instance ``instrument``.
         :param value: any text.
+        :raises OutputError: where the disk refuses.
         """
         self._metadata[key] = value
-        self._save_sidecar()
+        try:
+            self._save_sidecar()
+        except OSError as error:
+            raise self._not('written', error) from error
 
     def add_topic(
         self,
@@ -131,6 +147,7 @@ class BagWriter:
         :param definition: the message definition, for types that Jazzy's common interfaces lack.
         :param digest: the type's RIHS01 hash; None to compute it.
         :raises RecordingError: for a type without definition, or another type than before.
+        :raises OutputError: where the disk refuses.
         """
         known = self._connections.get(name)
         if known is not None and known.msgtype != msgtype:
@@ -141,13 +158,16 @@ class BagWriter:
         if known is not None:
             return
         text, rihs01 = definition_of(msgtype, definition, digest)
-        self._connections[name] = self._writer.add_connection(
-            name,
-            msgtype,
-            msgdef=text,
-            rihs01=rihs01,
-            offered_qos_profiles=[qos or offered_qos()],
-        )
+        try:
+            self._connections[name] = self._writer.add_connection(
+                name,
+                msgtype,
+                msgdef=text,
+                rihs01=rihs01,
+                offered_qos_profiles=[qos or offered_qos()],
+            )
+        except _REFUSED as error:
+            raise self._not('written', error) from error
         self.counts[name] = 0
 
     def write_raw(self, topic: str, cdr: bytes, log_time_ns: int) -> None:
@@ -157,7 +177,8 @@ class BagWriter:
         :param topic: a topic that was added.
         :param cdr: the message as it was received.
         :param log_time_ns: when it was received [ns].
-        :raises RecordingError: for an unknown topic, or where the disk refuses.
+        :raises RecordingError: for an unknown topic.
+        :raises OutputError: where the disk refuses.
         """
         connection = self._connections.get(topic)
         if connection is None:
@@ -171,14 +192,12 @@ class BagWriter:
             self.counts[topic] += 1
             # A clock that was set back counts as elapsed too, or nothing would be flushed.
             if abs(log_time_ns - self._flushed_ns) >= self._flush_ns:
-                self.flush()
+                self._flush()
                 self._flushed_ns = log_time_ns
-        except OSError as error:
-            raise RecordingError(
-                f'{self.path}: cannot be written ({error}); make room, then `tendon recover` it'
-            ) from error
+        except _REFUSED as error:
+            raise self._not('written', error) from error
 
-    def flush(self) -> None:
+    def _flush(self) -> None:
         """Hand everything written so far to the operating system."""
         storage = self._writer.storage
         if isinstance(storage, McapWriter):
@@ -189,10 +208,18 @@ class BagWriter:
             storage.conn.commit()
 
     def close(self) -> None:
-        """Finish the bag: index and metadata. A second call does nothing."""
+        """
+        Finish the bag: index and metadata. A second call does nothing.
+
+        :raises OutputError: where the disk refuses; where it did before, the bag is only let go.
+        """
         if self._closed:
             return
         self._closed = True
+        if self._refused:
+            # What was refused is there in part: an index behind it would tell of what is not.
+            self._abort()
+            return
         if not any(self.counts.values()):
             # The format has no empty time span; rosbags would note the largest integer as start.
             self._writer.min_timestamp = 0
@@ -200,12 +227,31 @@ class BagWriter:
             self._writer.set_custom_data(key, value)
         try:
             self._writer.close()
-        except OSError as error:
+            (self.path / SIDECAR).unlink(missing_ok=True)
+        except _REFUSED as error:
+            self._abort()
+            raise self._not('finished', error) from error
+
+    def _abort(self) -> None:
+        """Let go of the files; what is still to be written is refused once more."""
+        with suppress(*_REFUSED):
             self._writer.abort()
-            raise RecordingError(
-                f'{self.path}: cannot be finished ({error}); make room, then `tendon recover` it'
-            ) from error
-        (self.path / SIDECAR).unlink(missing_ok=True)
 
     def _save_sidecar(self) -> None:
-        (self.path / SIDECAR).write_text(json.dumps(self._metadata, indent=1), encoding='utf-8')
+        """Save the metadata so that, on a full disk, those from before stay."""
+        part = self.path / f'{SIDECAR}.part'
+        part.write_text(json.dumps(self._metadata, indent=1), encoding='utf-8')
+        part.replace(self.path / SIDECAR)
+
+    def _not(self, done: str, error: Exception) -> OutputError:
+        """Return the error of a disk that refused; from now on the bag is left as it is."""
+        self._refused = True
+        return OutputError(
+            f'{self.path}: cannot be {done} ({error}); make room, then `tendon recover` it'
+        )
+
+    def _not_created(self, error: Exception) -> OutputError:
+        return OutputError(
+            f'{self.path}: cannot be created ({error}); give the path of a bag that does not '
+            'exist in a folder that can be written'
+        )

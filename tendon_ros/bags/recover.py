@@ -17,6 +17,7 @@ from rosbags.interfaces import Qos
 from rosbags.rosbag2.metadata import parse_qos
 import yaml
 
+from tendon_ros.bags.all_or_nothing import all_or_nothing
 from tendon_ros.bags.bag_writer import BagWriter, SIDECAR, Storage
 from tendon_ros.bags.mcap_salvage import salvage
 from tendon_ros.bags.storage import bag_metadata, storage_files
@@ -48,6 +49,7 @@ def recover(path: Path | str, out: Path | str) -> RecoverySummary:
     :param out: folder of the new bag; must not exist.
     :return: what was recovered.
     :raises RecordingError: where nothing can be read, or ``out`` exists.
+    :raises OutputError: where ``out`` cannot be written.
     """
     path, out = Path(path), Path(out)
     files = storage_files(path)
@@ -60,9 +62,10 @@ def recover(path: Path | str, out: Path | str) -> RecoverySummary:
             'recover'
         )
     storage: Storage = 'mcap' if kinds == {'.mcap'} else 'sqlite3'
-    bag = BagWriter(out, storage=storage, metadata=_left_metadata(path))
+    with all_or_nothing(out):
+        bag = BagWriter(out, storage=storage, metadata=_left_metadata(path))
     try:
-        with bag:
+        with all_or_nothing(out), bag:
             copy = _copy_mcap if storage == 'mcap' else _copy_sqlite
             whole = [copy(file, bag) for file in files]
             bag.set_metadata('recovered_from', str(path))
@@ -128,7 +131,13 @@ def _copy_sqlite(path: Path, bag: BagWriter) -> bool:
         # Opened for writing, so that SQLite itself undoes the transaction that was cut off; on a
         # copy, so that the damaged bag stays as it is.
         for file in path.parent.glob(f'{path.name}*'):
-            shutil.copy(file, folder)
+            try:
+                shutil.copy(file, folder)
+            except OSError as error:
+                raise RecordingError(
+                    f'{file}: cannot be copied to {folder} ({error.strerror}); make room there, '
+                    'or set TMPDIR to a folder with room'
+                ) from error
         _pad(Path(folder) / path.name)
         with closing(sqlite3.connect(Path(folder) / path.name)) as database:
             try:

@@ -8,6 +8,7 @@ from pathlib import Path
 import shutil
 import tempfile
 
+from tendon_ros.bags.all_or_nothing import all_or_nothing
 from tendon_ros.bags.bag_writer import BagWriter, Storage
 from tendon_ros.bags.encoding import Batch, joint_states, wrenches
 from tendon_ros.bags.place import check_bag_output
@@ -47,7 +48,7 @@ def write_recording(
     :param overwrite: replace a bag that is there; anything else is never replaced.
     :return: the path.
     :raises RecordingError: where a channel has no topic, or ROS cannot use the namespace.
-    :raises OutputError: where the bag cannot be created, or something is in its place.
+    :raises OutputError: where the bag cannot be written, or something is in its place.
     """
     path = Path(path)
     check_namespace(namespace)
@@ -68,12 +69,15 @@ def write_recording(
             f'{path}: cannot be created ({error}); give a folder that can be written'
         ) from error
     try:
-        with BagWriter(
-            part / path.stem if single else part / path.name,
-            storage=FILE_STORAGE.get(path.suffix, storage),
-            compress=compress,
-            metadata=metadata,
-        ) as bag:
+        with (
+            all_or_nothing(path),
+            BagWriter(
+                part / path.stem if single else part / path.name,
+                storage=FILE_STORAGE.get(path.suffix, storage),
+                compress=compress,
+                metadata=metadata,
+            ) as bag,
+        ):
             for topic in batches:
                 bag.add_topic(full_topic(namespace, topic), TOPIC_TYPES[topic])
             for stamp, topic, cdr in _in_order(batches):

@@ -17,7 +17,7 @@ from tendon_ros import __version__
 from tendon_ros.bags.bag_writer import BagWriter
 from tendon_ros.bags.qos import offered_qos
 from tendon_ros.bags.topics import TOPIC_TYPES
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError, RecordingError
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.drops import Drops
 from tendon_ros.nodes.parameter_census import ParameterCensus
@@ -84,8 +84,10 @@ class RecorderNode(TendonNode):
         super().close()
         if not hasattr(self, '_bag'):
             return
-        self._bag.set_metadata('dropped', json.dumps(self._drops.lost))
-        self._bag.close()
+        try:
+            self._bag.set_metadata('dropped', json.dumps(self._drops.lost))
+        finally:
+            self._bag.close()
         lost = sum(self._drops.lost.values())
         self.get_logger().info(
             f'{self._bag.path}: {sum(self._bag.counts.values())} messages on '
@@ -126,17 +128,14 @@ class RecorderNode(TendonNode):
                 if topic not in self._bag.counts:
                     self._bag.add_topic(topic, kind, self._offered(topic))
                     self.get_logger().info(f'first message of {topic}')
-            except RecordingError as error:
-                self._refuse(topic, str(error))
-                return
-            if topic in self._own:
-                self._drops.note(topic, info.get('publication_sequence_number'))
-                self._began = self._began or time.monotonic()
-            try:
+                if topic in self._own:
+                    self._drops.note(topic, info.get('publication_sequence_number'))
+                    self._began = self._began or time.monotonic()
                 self._bag.write_raw(topic, cdr, info.get('received_timestamp') or time.time_ns())
             except RecordingError as error:
-                self.failure = error
-                self.stopping.set()
+                self._refuse(topic, str(error))
+            except OutputError as error:
+                self._give_up(error)
 
         return on_message
 
@@ -175,7 +174,14 @@ class RecorderNode(TendonNode):
     def _on_parameters(self, node: str, values: Mapping[str, object]) -> None:
         self._found[node] = values
         if not self.stopping.is_set():
-            self._bag.set_metadata('parameters', json.dumps(self._found, default=str))
+            try:
+                self._bag.set_metadata('parameters', json.dumps(self._found, default=str))
+            except OutputError as error:
+                self._give_up(error)
+
+    def _give_up(self, error: OutputError) -> None:
+        self.failure = error
+        self.stopping.set()
 
 
 def _versions() -> dict[str, str]:

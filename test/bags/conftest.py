@@ -1,5 +1,8 @@
 """A recording that has a bit of everything, and a way to write messages as foreign drivers do."""
 
+from contextlib import contextmanager
+import resource
+
 import numpy as np
 import pytest
 
@@ -38,6 +41,22 @@ def recording():
         epoch_ns=1_700_000_000_123_456_789,
         metadata={'seed': '7', 'note': 'θ'},
     )
+
+
+@pytest.fixture
+def refused_beyond():
+    """Return a context in which the system refuses files of more than so many bytes."""
+
+    @contextmanager
+    def limit(size):
+        before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (before, most))
+
+    return limit
 
 
 @pytest.fixture

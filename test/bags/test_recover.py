@@ -19,8 +19,9 @@ from tendon_ros.bags.mcap_salvage import salvage
 from tendon_ros.bags.qos import offered_qos
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.recover import recover
+from tendon_ros.bags.storage import bag_metadata
 from tendon_ros.bags.writer import write_recording
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import OutputError, RecordingError, TendonError
 
 WRITE_UNTIL_KILLED = """
 import sys
@@ -135,13 +136,80 @@ def test_topics_types_qos_and_foreign_definitions_are_kept(tmp_path, storage):
     bag = BagWriter(tmp_path / 'bag', storage=storage)
     bag.add_topic('/state', 'my_msgs/msg/State', qos, definition='float64 value\n')
     bag.write_raw('/state', b'\x00\x01\x00\x00' + b'\x00' * 8, 5)
-    bag.flush()
+    bag.write_raw('/state', b'\x00\x01\x00\x00' + b'\x00' * 8, 2 * 10**9)  # the second is over
     recover(tmp_path / 'bag', tmp_path / 'new')
     bag.close()
     with Reader(tmp_path / 'bag') as first, Reader(tmp_path / 'new') as second:
         (one,), (other,) = first.connections, second.connections
         assert one[1:7] == other[1:7]
         assert other.ext.offered_qos_profiles == [qos]
+
+
+STRING = b'\x00\x01\x00\x00' + (4093).to_bytes(4, 'little') + b'x' * 4092 + b'\x00'
+
+
+def write_until_refused(bag):
+    for i in range(1000):
+        bag.write_raw('/a', STRING, i * 10**8)
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_full_disk_leaves_what_can_be_recovered(tmp_path, refused_beyond, storage):
+    path = tmp_path / 'bag'
+    bag = BagWriter(path, storage=storage, compress=False, metadata={'seed': '3'})
+    bag.add_topic('/a', 'std_msgs/msg/String')
+    said = rf'{path}: cannot be written \(.+\); make room, then `tendon recover` it'
+    with pytest.raises(OutputError, match=said), refused_beyond(500_000), bag:
+        write_until_refused(bag)
+    with refused_beyond(0), pytest.raises(OutputError, match=said):
+        bag.set_metadata('dropped', '5')
+    summary = recover(path, tmp_path / 'new')
+    assert summary.damaged
+    assert 0.8 * 500_000 < summary.messages * len(STRING) < 500_000
+    with Reader(tmp_path / 'new') as reader:
+        assert [stamp for _, stamp, _ in reader.messages()] == [
+            i * 10**8 for i in range(summary.messages)
+        ]
+    assert bag_metadata(tmp_path / 'new')['seed'] == '3'
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_bag_that_cannot_be_finished_can_be_recovered(tmp_path, refused_beyond, storage):
+    bag = BagWriter(tmp_path / 'bag', storage=storage, compress=False)
+    bag.add_topic('/a', 'std_msgs/msg/String')
+    for i in range(12):
+        bag.write_raw('/a', STRING, i * 10**8)
+    with (
+        pytest.raises(OutputError, match=r'cannot be finished .* then `tendon recover` it'),
+        refused_beyond(4096),
+    ):
+        bag.close()
+    bag.close()
+    assert recover(tmp_path / 'bag', tmp_path / 'new').messages == 11
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_bag_that_cannot_be_created_leaves_its_path_free(tmp_path, refused_beyond, storage):
+    path = tmp_path / 'bag'
+    with pytest.raises(OutputError, match=f'{path}: cannot be created'), refused_beyond(0):
+        BagWriter(path, storage=storage)
+    BagWriter(path, storage=storage).close()
+
+
+@pytest.mark.parametrize(
+    ('storage', 'said'),
+    [
+        ('mcap', r'new: cannot be written .* nothing of it is left; make room'),
+        ('sqlite3', r'bag\.db3: cannot be copied to .*; make room there, or set TMPDIR'),
+    ],
+)
+def test_what_there_is_no_room_to_recover_leaves_nothing(
+    recording, tmp_path, refused_beyond, storage, said
+):
+    path = write_recording(recording, tmp_path / 'bag', storage=storage)
+    with pytest.raises(TendonError, match=said), refused_beyond(60_000):
+        recover(path, tmp_path / 'new')
+    assert not (tmp_path / 'new').exists()
 
 
 def test_an_independent_reader_opens_what_was_recovered(recording, tmp_path):

@@ -1,12 +1,13 @@
 """What is written reads back, by us and by an independent reader."""
 
+import re
+
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 import numpy as np
 import pytest
 import yaml
 
-from tendon_ros.bags import writer
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
 from tendon_ros.base.errors import OutputError, RecordingError
@@ -156,19 +157,25 @@ def test_a_bag_needs_folders_above_it(recording, tmp_path):
         write_recording(recording, tmp_path / 'file' / 'deep' / 'bag')
 
 
-def test_no_half_bag_is_left_behind(recording, tmp_path, monkeypatch):
-    kept = write_recording(recording, tmp_path / 'kept')
-
-    def broken(batches):
-        yield from list(writer_order(batches))[:100]
-        raise OSError('disk full')
-
-    writer_order = writer._in_order
-    monkeypatch.setattr(writer, '_in_order', broken)
-    with pytest.raises(OSError, match='disk full'):
-        write_recording(recording, kept, overwrite=True)
-    assert [entry.name for entry in tmp_path.iterdir()] == ['kept']
+@pytest.mark.parametrize('name', ['kept', 'kept.mcap', 'kept.db3'])
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+@pytest.mark.parametrize('size', [0, 60_000])
+def test_no_half_bag_is_left_behind(
+    recording, tmp_path, refused_beyond, name, storage, size, capfd
+):
+    kept = write_recording(recording, tmp_path / name)
+    with (
+        pytest.raises(OutputError) as caught,
+        refused_beyond(size),
+    ):
+        write_recording(recording, kept, storage=storage, overwrite=True)
+    assert re.fullmatch(
+        rf'{kept}: cannot be written \(.+\), nothing of it is left; make room, .*',
+        str(caught.value),
+    )
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
     assert_same(recording, read_recording(kept))
+    assert capfd.readouterr().err == ''  # nor does Python complain of a file that it cannot close
 
 
 def test_force_and_torque_at_different_stamps_are_refused(recording, tmp_path):
