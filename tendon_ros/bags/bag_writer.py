@@ -54,7 +54,8 @@ class BagWriter:
     A rosbag2 of version 9 that is being written; a context manager.
 
     Leaving the context closes the bag, also on an error: what was recorded stays readable. Where
-    the disk refused something, the bag stays unfinished, as ``tendon recover`` takes it.
+    the disk refused something, the bag stays unfinished, as ``tendon recover`` takes it. Any
+    thread may write, one at a time.
 
     :param path: folder of the bag; must not exist.
     :param storage: ``mcap`` or ``sqlite3``.
@@ -92,6 +93,7 @@ class BagWriter:
             self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         try:
             self._writer.open()
+            self._for_all_threads()
             self._save_sidecar()
         except (WriterError, *_REFUSED) as error:
             self._abort()
@@ -196,6 +198,14 @@ class BagWriter:
                 self._flushed_ns = log_time_ns
         except _REFUSED as error:
             raise self._not('written', error) from error
+
+    def _for_all_threads(self) -> None:
+        """Open the database so that callbacks may write what another thread has made."""
+        storage = self._writer.storage
+        if isinstance(storage, Sqlite3Writer):
+            storage.conn.close()
+            storage.conn = sqlite3.connect(storage.path, check_same_thread=False)
+            storage.cursor = storage.conn.cursor()
 
     def _flush(self) -> None:
         """Hand everything written so far to the operating system."""

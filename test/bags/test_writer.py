@@ -1,5 +1,6 @@
 """What is written reads back, by us and by an independent reader."""
 
+from concurrent.futures import ThreadPoolExecutor
 import re
 
 from mcap.reader import make_reader
@@ -8,6 +9,8 @@ import numpy as np
 import pytest
 import yaml
 
+from tendon_ros.bags.bag_writer import BagWriter
+from tendon_ros.bags.info import summarise
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
 from tendon_ros.base.errors import OutputError, RecordingError
@@ -176,6 +179,16 @@ def test_no_half_bag_is_left_behind(
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
     assert_same(recording, read_recording(kept))
     assert capfd.readouterr().err == ''  # nor does Python complain of a file that it cannot close
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_another_thread_may_write_than_opened_the_bag(tmp_path, storage):
+    # as the callbacks of the recorder do
+    with BagWriter(tmp_path / 'bag', storage=storage) as bag, ThreadPoolExecutor() as pool:
+        pool.submit(bag.add_topic, '/a', 'std_msgs/msg/String').result()
+        for i in range(3):
+            pool.submit(bag.write_raw, '/a', b'\x00\x01\x00\x00' + bytes(4), i * 10**9).result()
+    assert summarise(tmp_path / 'bag').messages == 3
 
 
 def test_force_and_torque_at_different_stamps_are_refused(recording, tmp_path):
