@@ -22,7 +22,7 @@ from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.drops import Drops
 from tendon_ros.nodes.parameter_census import ParameterCensus
 from tendon_ros.nodes.recorder import PROGRAM
-from tendon_ros.nodes.settings import names_in, Value
+from tendon_ros.nodes.settings import names_in, SettingError, Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 #: topics of the instrument beside those that carry channels; the last two are commands
@@ -57,6 +57,10 @@ class RecorderNode(TendonNode):
         self._found: dict[str, Mapping[str, object]] = {}
         self._subscriptions_by_topic: dict[str, Subscription] = {}
         self._refused: set[str] = set()
+        own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
+        self._own = frozenset(own)
+        self._extra = {self._full_name(topic) for topic in names_in(values['topics'])} - own.keys()
+        # last of what may fail: a corrected command shall find the path free
         path = str(values['out']) or time.strftime('rosbag2_%Y_%m_%d-%H_%M_%S')
         self._bag = BagWriter(
             path,
@@ -68,10 +72,6 @@ class RecorderNode(TendonNode):
                 'versions': json.dumps(_versions()),
             },
         )
-        own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
-        self._own = frozenset(own)
-        asked = names_in(values['topics'])
-        self._extra = {self.resolve_topic_name(topic) for topic in asked} - own.keys()
         for topic, kind in {**own, **SYSTEM}.items():
             self._subscribe(topic, kind)
         self._census = ParameterCensus(self, self._on_parameters)
@@ -88,6 +88,8 @@ class RecorderNode(TendonNode):
             self._bag.set_metadata('dropped', json.dumps(self._drops.lost))
         finally:
             self._bag.close()
+        if self.failure is not None:
+            return
         lost = sum(self._drops.lost.values())
         self.get_logger().info(
             f'{self._bag.path}: {sum(self._bag.counts.values())} messages on '
@@ -100,6 +102,16 @@ class RecorderNode(TendonNode):
         level = Level.WARN if lost else Level.OK
         text = f'{lost} messages lost on the way' if lost else f'recording to {self._bag.path}'
         return level, text, {'lost': lost, **self._bag.counts}
+
+    def _full_name(self, topic: str) -> str:
+        """Return the absolute name of a topic that was asked for."""
+        try:
+            return self.resolve_topic_name(topic)
+        except RuntimeError:  # the base of the errors of rcl, which tell the line of its source
+            raise SettingError(
+                f'parameter topics: ROS cannot use the name {topic!r}; between slashes write '
+                'letters, digits and underscores, no digit first, such as /arm/joint_states'
+            ) from None
 
     def _subscribe(self, topic: str, kind: str, *, reliable: bool = True) -> None:
         """Record a topic from now on; its place in the bag is made by its first message."""

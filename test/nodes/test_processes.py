@@ -339,6 +339,7 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
         ),
         ('recorder', ['--out', '.'], '.: cannot be created'),
         ('recorder', ['--duration', '-1'], 'out of bounds'),
+        ('recorder', ['--topics', 'good, bad topic!'], "cannot use the name 'bad topic!'"),
     ],
 )
 def test_a_mistake_is_one_line_and_status_2(start, node, arguments, said, tmp_path):
@@ -347,6 +348,8 @@ def test_a_mistake_is_one_line_and_status_2(start, node, arguments, said, tmp_pa
     lines = [line for line in one.lines if not line.startswith('[INFO]')]
     assert said in lines[-1]
     assert len(lines) == 1, one.said
+    # a corrected command finds the place of its output free
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_signal_ends_a_first_start_that_still_compiles(start, tmp_path, monkeypatch):
