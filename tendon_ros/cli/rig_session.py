@@ -11,11 +11,13 @@ from contextlib import contextmanager, ExitStack
 import os
 from pathlib import Path
 import random
+import shutil
 import signal
 import subprocess
 import sys
 import time
 
+from tendon_ros.bags.place import check_bag_output
 from tendon_ros.base.errors import SimulationError
 
 #: a first start may compile for some twenty seconds on each of two cores, slow ones included [s]
@@ -73,17 +75,22 @@ def record_rig(
     """
     Run the paper's trajectory on a simulated rig and record all topics.
 
-    :param folder: for bag and logs; must exist.
+    :param folder: for bag and logs; those of an earlier run in it are replaced, and nothing else.
     :param instrument: file or name.
     :param method: of the estimator.
     :param progress: called with the part that is done, 0 to 1.
     :param span: expected duration of the trajectory [s], for the progress alone.
     :return: the bag.
+    :raises OutputError: where something is in place of the bag that is none.
     :raises SimulationError: where a node does not start or fails; names its log.
     :raises KeyboardInterrupt: on SIGTERM as on Ctrl-C, once the nodes have ended.
     """
-    os.environ.setdefault('ROS_DOMAIN_ID', str(random.SystemRandom().randint(1, 100)))
     bag = folder / 'rig_bag'
+    check_bag_output(bag, overwrite=True)
+    if bag.exists():
+        shutil.rmtree(bag)
+    folder.mkdir(parents=True, exist_ok=True)
+    os.environ.setdefault('ROS_DOMAIN_ID', str(random.SystemRandom().randint(1, 100)))
     names = ('recorder', 'estimator', 'simulator')
     arguments = {
         'recorder': ['--out', str(bag)],

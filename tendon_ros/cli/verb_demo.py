@@ -42,8 +42,6 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: parsed arguments.
     """
-    import shutil
-
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import shown
     from tendon_ros.cli.story_session import tell
@@ -53,13 +51,10 @@ def run(args: argparse.Namespace) -> None:
     if args.grasper is not None and not Path(args.grasper).is_file():
         raise RecordingError(f'--grasper {args.grasper}: no such file')
     out = Path(args.out)
-    folder = out / 'live'
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     print(
         '1. The rig live: simulator, estimator, recorder and trajectory as processes', flush=True
     )
-    rig = _live(folder)
+    rig = _live(out / 'live')
     print(
         f'   force RMSE {rig.score.rmse:.3f} N of {rig.score.span:.1f} N; {rig.shared} of '
         f'{rig.measured} measurements got an estimate; live and offline differ by at most '
