@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.bags.mapping import Mapping, Time
-from tendon_ros.bags.stamps import to_seconds, to_stamps
+from tendon_ros.bags.stamps import END, to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.quantity import factor
@@ -60,7 +61,8 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     """Return a run as a recording."""
     warnings: list[str] = []
     place = f'{path}: run {table.key}'
-    common = _stamps(place, _time(path, table, mapping.time), warnings)
+    epoch = round(mapping.epoch.timestamp() * 1e9)
+    common = _stamps(place, _time(path, table, mapping.time), epoch, warnings)
     channels = {}
     for name, source in mapping.channels.items():
         raw = table.column(source.column, f'{path}: channels.{name}')
@@ -74,7 +76,7 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
             own = _time(path, table, source.time)
             taken = ~_repeated(own, value)
             value = value[taken]
-            time, usable = _stamps(f'{place}: {name}', own[taken], warnings)
+            time, usable = _stamps(f'{place}: {name}', own[taken], epoch, warnings)
         keep = usable & np.isfinite(value)
         lost = usable & ~keep
         if not keep.any():
@@ -91,7 +93,7 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     return Recording(
         name=table.key,
         channels=channels,
-        epoch_ns=round(mapping.epoch.timestamp() * 1e9),
+        epoch_ns=epoch,
         metadata=_metadata(path, table, mapping),
         warnings=tuple(warnings),
     )
@@ -116,7 +118,9 @@ def _repeated(time: FloatArray, value: FloatArray) -> BoolArray:
     return repeated
 
 
-def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArray, BoolArray]:
+def _stamps(
+    place: str, time: FloatArray, epoch_ns: int, warnings: list[str]
+) -> tuple[FloatArray, BoolArray]:
     """Return stamps as a bag keeps them, and which rows have a usable one; tell of the others."""
     usable = np.isfinite(time)
     last = float(np.abs(time[usable]).max(initial=0.0))
@@ -128,6 +132,7 @@ def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArr
     # Whole nanoseconds, so that the bag reads back as the same numbers.
     time[usable] = to_seconds(to_stamps(time[usable], 0), 0)
     usable[usable] = _increasing(time[usable])
+    _check_years(place, time[usable], epoch_ns)
     if not usable.all():
         first = 1 + int(np.flatnonzero(~usable)[0])
         warnings.append(
@@ -136,6 +141,19 @@ def _stamps(place: str, time: FloatArray, warnings: list[str]) -> tuple[FloatArr
         )
     _warn_of_jitter(place, time[usable], warnings)
     return time, usable
+
+
+def _check_years(place: str, time: FloatArray, epoch_ns: int) -> None:
+    """Complain of stamps that a header has no room for."""
+    for edge in (time[:1], time[-1:]):
+        for stamp in to_stamps(edge, epoch_ns).tolist():
+            if not 0 <= stamp < END:
+                year = (datetime(1970, 1, 1) + timedelta(seconds=stamp // 10**9)).year
+                raise RecordingError(
+                    f'{place}: its time reaches the year {year}, and ROS has stamps from 1970 to '
+                    '2037; say in the mapping, as its epoch, from when on the time counts: '
+                    "LabVIEW's from 1904-01-01"
+                )
 
 
 def _increasing(time: FloatArray) -> BoolArray:

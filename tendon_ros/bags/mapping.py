@@ -6,7 +6,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
     format: npz                  # npz, csv, mat or json
     runs: {include: '[0-9][0-9]', header: 'hdr_{key}'}
     time: {column: 0, unit: s}   # or {rate: 1000 Hz} where the file has no time
-    epoch: 2017-06-01T00:00:00Z  # header stamp of time zero; one second after 1970 by default
+    epoch: 2017-06-01T00:00:00Z  # when time zero was; one second after 1970 began by default
     channels:
       actuator/pulley_motor/position:
         column: 8                # number counted from 0, or a name
@@ -51,6 +51,9 @@ from tendon_ros.base.resources import installed, installed_names
 from tendon_ros.base.yaml_keys import UniqueKeys
 
 Column = Annotated[int, Field(ge=0, strict=True)] | Annotated[str, Field(min_length=1)]
+
+#: years of an epoch: time that counts from one of them fits into 64 bits of nanoseconds
+EARLIEST, LATEST = 1700, 2037
 
 
 def _checked(text: str, target: str) -> None:
@@ -150,10 +153,9 @@ class Mapping(_Strict):
     @field_validator('epoch')
     @classmethod
     def _in_utc(cls, value: datetime) -> datetime:
-        value = value if value.tzinfo else value.replace(tzinfo=UTC)
-        if value.timestamp() < 0.0:
-            raise ValueError('must not be before 1970')
-        return value
+        if not EARLIEST <= value.year <= LATEST:
+            raise ValueError(f'must lie in the years {EARLIEST} to {LATEST}')
+        return value if value.tzinfo else value.replace(tzinfo=UTC)
 
     @field_validator('channels')
     @classmethod

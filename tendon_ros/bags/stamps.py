@@ -14,6 +14,9 @@ from tendon_ros.base.recording import FloatArray
 
 IntArray = NDArray[np.int64]
 
+#: seconds in a header are signed and have 32 bits: it has no stamp from January 2038 on [ns]
+END = 2**31 * 10**9
+
 
 def to_seconds(stamp_ns: IntArray, epoch_ns: int) -> FloatArray:
     """

@@ -12,6 +12,7 @@ from tendon_ros.bags.all_or_nothing import all_or_nothing
 from tendon_ros.bags.bag_writer import BagWriter, Storage
 from tendon_ros.bags.encoding import Batch, joint_states, wrenches
 from tendon_ros.bags.place import check_bag_output
+from tendon_ros.bags.stamps import END
 from tendon_ros.bags.topics import (
     check_namespace,
     clean_namespace,
@@ -116,10 +117,16 @@ def _batches(recording: Recording) -> dict[str, list[Batch]]:
         else:
             out[topic] = list(joint_states(channels, epoch))
         first = min((int(stamps[0]) for stamps, _ in out[topic] if stamps.size), default=0)
+        last = max((int(stamps[-1]) for stamps, _ in out[topic] if stamps.size), default=0)
         if first < 0:
             raise RecordingError(
                 f'{recording.name}: {topic} has a stamp before 1970 ({first} ns); '
                 'set a later epoch'
+            )
+        if last >= END:
+            raise RecordingError(
+                f'{recording.name}: {topic} has a stamp that ROS has no room for, after January '
+                f'2038 ({last} ns); set an earlier epoch'
             )
     return out
 

@@ -225,6 +225,37 @@ def test_stamps_that_no_clock_gives_name_the_unit(tmp_path):
         imported(tmp_path, tmp_path / 'x.npz', MAPPING)
 
 
+LABVIEW = 3.8e9 + 0.25 * np.arange(N)  # seconds since 1904, in 2024
+
+
+def labview_file(tmp_path, time=LABVIEW):
+    np.savez(tmp_path / 'x.npz', **{'1': np.stack([time, COUNTS, COUNTS], axis=1)})
+    return tmp_path / 'x.npz'
+
+
+def test_stamps_that_ros_has_no_room_for_name_the_epoch(tmp_path):
+    with pytest.raises(RecordingError, match=r'reaches the year 2090, .* epoch.* 1904-01-01'):
+        imported(tmp_path, labview_file(tmp_path), MAPPING)
+    early = changed(epoch='1904-01-01')
+    with pytest.raises(RecordingError, match=r'run 1: its time reaches the year 1904, .* epoch'):
+        imported(tmp_path, labview_file(tmp_path, TIME), early)
+
+
+def test_stamps_since_1904_are_those_of_today(tmp_path):
+    (run,) = imported(tmp_path, labview_file(tmp_path), changed(epoch='1904-01-01'))
+    back = read_recording(write_recording(run, tmp_path / 'bag'))
+    for one in (run, back):
+        np.testing.assert_allclose(one['load_cell/force'].time, LABVIEW, rtol=0.0, atol=1e-6)
+        assert one.epoch_ns == -2_082_844_800 * 10**9
+
+
+def test_a_wild_stamp_beyond_2038_costs_one_row(tmp_path):
+    time = TIME.copy()
+    time[10] = 3e9
+    (run,) = imported(tmp_path, labview_file(tmp_path, time), MAPPING)
+    assert run['load_cell/force'].value.size == N - 1
+
+
 def test_a_column_of_nan_is_unmeasured(tmp_path):
     table = np.stack([TIME, COUNTS, COUNTS * np.nan], axis=1)
     np.savez(tmp_path / 'x.npz', **{'1': table})
@@ -280,7 +311,8 @@ def with_effort(**fields):
         (changed(runs={'header': 'hdr'}), 'must hold {key}'),
         (changed(format='csv'), 'a CSV file is one run'),
         (changed(epoch='yesterday'), 'epoch'),
-        (changed(epoch='1950-01-01'), 'before 1970'),
+        (changed(epoch='1601-01-01'), 'epoch: must lie in the years 1700 to 2037'),
+        (changed(epoch='2038-01-01'), 'epoch: must lie in the years 1700 to 2037'),
         (changed(metadata={'seed': 3}), 'metadata.seed'),
     ],
 )

@@ -1,6 +1,7 @@
 """What is written reads back, by us and by an independent reader."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 import re
 
 from mcap.reader import make_reader
@@ -203,3 +204,12 @@ def test_stamps_before_1970_are_refused(tmp_path):
     early = Channel('actuator/m/position', np.array([-1.0, 0.0]), np.zeros(2))
     with pytest.raises(RecordingError, match='before 1970'):
         write_recording(Recording('early', {early.name: early}), tmp_path / 'bag')
+
+
+def test_stamps_that_ros_has_no_room_for_are_refused(tmp_path):
+    late = Channel('actuator/m/position', np.array([0.0, 1.0]), np.zeros(2))
+    last = Recording('late', {late.name: late}, epoch_ns=(2**31 - 1) * 10**9)
+    with pytest.raises(RecordingError, match=r'actuator/measured_js has a stamp .* after .*2038'):
+        write_recording(last, tmp_path / 'bag')
+    back = write_recording(replace(last, epoch_ns=last.epoch_ns - 1), tmp_path / 'bag')
+    np.testing.assert_array_equal(read_recording(back)[late.name].time, late.time)
