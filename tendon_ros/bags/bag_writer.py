@@ -146,7 +146,8 @@ class BagWriter:
         :param name: absolute name of the topic.
         :param msgtype: for instance ``sensor_msgs/msg/JointState``.
         :param qos: what its publisher offers; None for reliable with depth 10.
-        :param definition: the message definition, for types that Jazzy's common interfaces lack.
+        :param definition: the message definition, for types that Jazzy's common interfaces lack;
+            empty where it is lost.
         :param digest: the type's RIHS01 hash; None to compute it.
         :raises RecordingError: for a type without definition, or another type than before.
         :raises OutputError: where the disk refuses.

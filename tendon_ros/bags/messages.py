@@ -10,7 +10,7 @@ from rosbags.typesys.store import Typestore
 
 from tendon_ros.base.errors import RecordingError
 
-#: what stands for the hash of a type whose definition cannot be parsed
+#: what stands for the hash of a type whose definition cannot be parsed, or is lost
 UNKNOWN_HASH = 'RIHS01_' + '0' * 64
 
 
@@ -47,7 +47,8 @@ def definition_of(msgtype: str, definition: str | None, digest: str | None) -> t
     Return what a bag stores about a type: its full definition and its hash.
 
     :param msgtype: for instance ``sensor_msgs/msg/JointState``.
-    :param definition: the definition where it is known, else None.
+    :param definition: the definition where it is known; empty where it is lost, and the messages
+        shall be kept nevertheless; None where the type has to be a known one.
     :param digest: the RIHS01 hash where it is known, else None.
     :return: definition, hash.
     :raises RecordingError: for a type that is neither known nor defined.
@@ -58,10 +59,12 @@ def definition_of(msgtype: str, definition: str | None, digest: str | None) -> t
     if msgtype in store.fielddefs:
         text = definition or store.generate_msgdef(msgtype, ros_version=2)[0]
         return text, digest or store.hash_rihs01(msgtype)
-    if not definition:
+    if definition is None:
         raise RecordingError(
             f'{msgtype}: not among the common interfaces of Jazzy; give its definition'
         )
+    if not definition:
+        return '', digest or UNKNOWN_HASH
     own = get_typestore(Stores.ROS2_JAZZY)
     try:
         own.register(get_types_from_msg(definition, msgtype))

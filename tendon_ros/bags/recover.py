@@ -20,6 +20,7 @@ import yaml
 from tendon_ros.bags.all_or_nothing import all_or_nothing
 from tendon_ros.bags.bag_writer import BagWriter, SIDECAR, Storage
 from tendon_ros.bags.mcap_salvage import salvage
+from tendon_ros.bags.place import METADATA
 from tendon_ros.bags.storage import bag_metadata, storage_files
 from tendon_ros.base.errors import RecordingError
 
@@ -29,11 +30,15 @@ _LARGEST = 2**36
 
 @dataclass(frozen=True)
 class RecoverySummary:
-    """What :func:`recover` found: messages by topic, and whether a file was cut or damaged."""
+    """
+    What :func:`recover` found: messages by topic, and whether a file was cut or damaged.
+
+    ``damaged`` is None where all is sound that is there, and nothing tells whether that is all.
+    """
 
     out: Path
     counts: Mapping[str, int]
-    damaged: bool
+    damaged: bool | None
 
     @property
     def messages(self) -> int:
@@ -76,7 +81,8 @@ def recover(path: Path | str, out: Path | str) -> RecoverySummary:
     except BaseException:
         shutil.rmtree(out, ignore_errors=True)
         raise
-    return RecoverySummary(out, dict(bag.counts), not all(whole))
+    unsure = None in whole and False not in whole
+    return RecoverySummary(out, dict(bag.counts), None if unsure else not all(whole))
 
 
 def _left_metadata(path: Path) -> dict[str, str]:
@@ -125,8 +131,8 @@ def _custom(metadata: Mapping[str, str]) -> dict[str, str]:
     return {}
 
 
-def _copy_sqlite(path: Path, bag: BagWriter) -> bool:
-    """Copy what is left of an SQLite file; return whether it was complete."""
+def _copy_sqlite(path: Path, bag: BagWriter) -> bool | None:
+    """Copy what is left of an SQLite file; return whether it was complete, None for unknown."""
     with tempfile.TemporaryDirectory() as folder:
         # Opened for writing, so that SQLite itself undoes the transaction that was cut off; on a
         # copy, so that the damaged bag stays as it is.
@@ -143,10 +149,19 @@ def _copy_sqlite(path: Path, bag: BagWriter) -> bool:
             try:
                 _copy_rows(database, bag)
                 (verdict,) = database.execute('PRAGMA quick_check').fetchone()
-                (finished,) = database.execute('SELECT count(*) FROM metadata').fetchone()
+                finished = _finished(database, path)
             except sqlite3.Error:
                 return False
-    return bool(verdict == 'ok' and finished)
+    return finished if verdict == 'ok' else False
+
+
+def _finished(database: sqlite3.Connection, path: Path) -> bool | None:
+    """Tell whether the writer of an SQLite file came to its end, None where nothing tells."""
+    tables = {row[0] for row in database.execute('SELECT name FROM sqlite_master')}
+    if 'metadata' in tables:
+        return bool(database.execute('SELECT count(*) FROM metadata').fetchone()[0])
+    # before ROS 2 Iron only the file beside it said so
+    return (path.parent / METADATA).is_file() or None
 
 
 def _pad(path: Path) -> None:
@@ -163,7 +178,7 @@ def _copy_rows(database: sqlite3.Connection, bag: BagWriter) -> None:
     """Copy topics and messages until the database gives no more."""
     columns = {row[1] for row in database.execute('PRAGMA table_info(topics)')}
     qos_column = 'offered_qos_profiles' if 'offered_qos_profiles' in columns else "''"
-    definitions: dict[str, tuple[str, str]] = {}
+    definitions: dict[str, tuple[str, str | None]] = {}
     with suppress(sqlite3.Error):
         query = (
             'SELECT topic_type, encoded_message_definition, type_description_hash '
@@ -173,9 +188,12 @@ def _copy_rows(database: sqlite3.Connection, bag: BagWriter) -> None:
     topics: dict[int, str] = {}
     query = f'SELECT id, name, type, {qos_column} FROM topics'
     for number, name, kind, text in database.execute(query):
-        definition, digest = definitions.get(kind, (None, None))
-        bag.add_topic(name, kind, _qos(text), definition=definition, digest=digest)
-        topics[number] = name
+        # before ROS 2 Iron no definitions were kept
+        definition, digest = definitions.get(kind, ('', None))
+        # As in an MCAP: what contradicts an earlier topic is left out.
+        with suppress(RecordingError):
+            bag.add_topic(name, kind, _qos(text), definition=definition, digest=digest)
+            topics[number] = name
     # By row, not by the index over time: an index that is cut off would end the copy early.
     for topic, stamp, data in database.execute(
         'SELECT topic_id, timestamp, data FROM messages NOT INDEXED ORDER BY id'

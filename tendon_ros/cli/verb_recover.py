@@ -6,6 +6,13 @@ import argparse
 
 HELP = 'make a readable bag of one whose writer was killed or that was cut off'
 
+#: what is said of a bag that was damaged, of one that was not, and of one that does not tell
+STATES = {
+    True: 'its end is missing or damaged',
+    False: 'nothing was missing',
+    None: 'nothing in it is damaged, but nothing tells whether its end is there',
+}
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
@@ -26,7 +33,6 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.bags.recover import recover
 
     summary = recover(args.bag, args.out)
-    state = 'its end is missing or damaged' if summary.damaged else 'nothing was missing'
-    print(f'{summary.out}: {summary.messages} messages recovered; {state}')
+    print(f'{summary.out}: {summary.messages} messages recovered; {STATES[summary.damaged]}')
     for topic, count in sorted(summary.counts.items()):
         print(f'  {count:8d} {topic}')

@@ -1,7 +1,8 @@
 """What is left of a bag whose writer was killed, or that was cut off."""
 
-from contextlib import suppress
+from contextlib import closing, suppress
 import signal
+import sqlite3
 import subprocess
 import sys
 
@@ -16,6 +17,7 @@ from rosbags.rosbag2 import Reader
 from tendon_ros.bags.bag_writer import BagWriter, SIDECAR
 from tendon_ros.bags.info import summarise
 from tendon_ros.bags.mcap_salvage import salvage
+from tendon_ros.bags.messages import UNKNOWN_HASH
 from tendon_ros.bags.qos import offered_qos
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.recover import recover
@@ -218,6 +220,65 @@ def test_an_independent_reader_opens_what_was_recovered(recording, tmp_path):
     with (tmp_path / 'new' / 'new.mcap').open('rb') as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         assert sum(1 for _ in reader.iter_decoded_messages()) == summary.messages
+
+
+#: tables as they were before ROS 2 Iron: without definitions of the types, and without metadata
+BEFORE_IRON = """
+    CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,
+        serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);
+    CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,
+        timestamp INTEGER NOT NULL, data BLOB NOT NULL);
+    CREATE INDEX timestamp_idx ON messages (timestamp ASC);
+    INSERT INTO topics VALUES (1, '/state', 'my_msgs/msg/State', 'cdr', '');
+    INSERT INTO topics VALUES (2, '/a', 'std_msgs/msg/String', 'cdr', '');
+    INSERT INTO topics VALUES (3, '/a', 'std_msgs/msg/Bool', 'cdr', '');
+"""
+
+
+@pytest.fixture
+def old_bag(tmp_path):
+    """Return the folder of a bag of an older ROS, without its metadata.yaml."""
+    path = tmp_path / 'old'
+    path.mkdir()
+    with closing(sqlite3.connect(path / 'old_0.db3')) as database:
+        database.executescript(BEFORE_IRON)
+        rows = [(topic, i, b'\x00\x01\x00\x00' + bytes(8)) for i in range(5) for topic in (1, 2)]
+        database.executemany('INSERT INTO messages VALUES (NULL, ?, ?, ?)', rows)
+        database.commit()
+    return path
+
+
+def test_a_type_of_which_nothing_is_known_costs_no_message(old_bag, tmp_path):
+    summary = recover(old_bag, tmp_path / 'new')
+    assert summary.counts == {'/state': 5, '/a': 5}
+    with Reader(tmp_path / 'new') as reader:
+        known = {c.topic: (c.msgtype, c.msgdef.data != '', c.digest) for c in reader.connections}
+        assert known['/state'] == ('my_msgs/msg/State', False, UNKNOWN_HASH)
+        assert known['/a'][:2] == ('std_msgs/msg/String', True)
+        data = [bytes(cdr) for c, _, cdr in reader.messages() if c.topic == '/state']
+    assert data == [b'\x00\x01\x00\x00' + bytes(8)] * 5
+    assert summarise(tmp_path / 'new').messages == 10
+
+
+def test_an_mcap_without_definitions_is_recovered(tmp_path):
+    with (tmp_path / 'x.mcap').open('wb') as stream:
+        writer = Writer(stream)
+        writer.start('ros2')
+        schema = writer.register_schema('my_msgs/msg/State', 'ros2msg', b'')
+        channel = writer.register_channel('/state', 'cdr', schema)
+        writer.add_message(channel, 5, b'\x00\x01\x00\x00' + bytes(8), 5)
+        writer.finish()
+    assert recover(tmp_path / 'x.mcap', tmp_path / 'new').counts == {'/state': 1}
+    assert summarise(tmp_path / 'new').messages == 1
+
+
+def test_a_bag_of_an_older_ros_is_complete_where_its_metadata_are_there(old_bag, tmp_path):
+    assert recover(old_bag, tmp_path / 'one').damaged is None
+    (old_bag / 'metadata.yaml').write_text('rosbag2_bagfile_information: {version: 4}')
+    assert recover(old_bag, tmp_path / 'two').damaged is False
+    file = old_bag / 'old_0.db3'
+    file.write_bytes(file.read_bytes()[:-4096])
+    assert recover(old_bag, tmp_path / 'three').damaged is True
 
 
 def test_an_lz4_bag_of_another_writer_is_recovered(tmp_path):
