@@ -34,11 +34,13 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.cli.progress import told
     from tendon_ros.diagnose.calibrate import calibrate
     from tendon_ros.model.instrument_file import load_instrument, save_instrument
+    from tendon_ros.model.joints import joint_names
     from tendon_ros.report.calibration_text import calibration_text
 
     check_output(args.out, files_read(args), overwrite=args.overwrite)
     instrument = load_instrument(args.instrument)
-    recordings = [read_recording(bag, args.namespace) for bag in args.bag]
+    joints = joint_names(instrument)
+    recordings = [read_recording(bag, args.namespace, joints) for bag in args.bag]
     with told() as report:
         found = calibrate(recordings, instrument, report)
     args.out.parent.mkdir(parents=True, exist_ok=True)

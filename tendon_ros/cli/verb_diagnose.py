@@ -63,6 +63,7 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.diagnose.session import diagnose
     from tendon_ros.identify.candidate import check_withheld
     from tendon_ros.model.instrument_file import load_instrument, save_instrument
+    from tendon_ros.model.joints import joint_names
     from tendon_ros.report.diagnosis_page import diagnosis_page
     from tendon_ros.report.diagnosis_text import summary
     from tendon_ros.report.page import write
@@ -78,7 +79,8 @@ def run(args: argparse.Namespace) -> None:
         check_output(folder / name, read, overwrite=replaced)
     instrument = load_instrument(args.instrument)
     check_withheld(instrument, args.withhold)
-    recordings = [read_recording(bag, args.namespace) for bag in args.bag]
+    joints = joint_names(instrument)
+    recordings = [read_recording(bag, args.namespace, joints) for bag in args.bag]
     folder.mkdir(parents=True, exist_ok=True)
     memory = Memory(folder / 'unfinished.json', recordings, instrument, args.withhold)
     with told() as report:

@@ -75,6 +75,7 @@ def run(args: argparse.Namespace) -> None:
     from tendon_ros.estimate import build_observer, estimate_recording
     from tendon_ros.estimate.score import scored
     from tendon_ros.model.instrument_file import load_instrument
+    from tendon_ros.model.joints import joint_names
 
     if args.rate is not None and not args.rate > 0.0:
         raise RecordingError(f'--rate {args.rate:g}: must be positive')
@@ -84,7 +85,7 @@ def run(args: argparse.Namespace) -> None:
     build_observer(instrument, args.method, **chosen)  # a mistake is told before any bag is read
     squares, samples, unit = 0.0, 0, ''
     for bag, out in _places(args):
-        recording = read_recording(bag, args.namespace)
+        recording = read_recording(bag, args.namespace, joint_names(instrument))
         with shown(f'estimating {recording.name}') as progress:
             observer = build_observer(instrument, args.method, **chosen)
             estimated = estimate_recording(recording, observer, progress, args.rate)

@@ -15,6 +15,7 @@ from tendon_ros.base.errors import TendonError
 from tendon_ros.estimate import build_observer, Estimate, Measurement, Observer, Synchroniser
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.joints import joint_names
 from tendon_ros.nodes.broadcast import Broadcast
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
@@ -105,8 +106,7 @@ class EstimatorNode(TendonNode):
 
     def _hearer(self, topic: str, instrument: Instrument) -> Callable[[Message], None]:
         """Return the callback of a topic of measurements."""
-        motors = JOINT_TOPICS.get(topic) in {'actuator', 'setpoint'}
-        joints = [f'pulley_{name}' for name in (instrument.driven if motors else instrument.inner)]
+        joints = joint_names(instrument).get(JOINT_TOPICS.get(topic, ''), ())
 
         def on_message(message: Message) -> None:
             begin = time.monotonic()

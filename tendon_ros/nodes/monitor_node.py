@@ -19,6 +19,7 @@ from tendon_ros.diagnose.watch_gap import gap_after
 from tendon_ros.diagnose.watch_stream import StampError
 from tendon_ros.estimate import Measurement
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.joints import joint_names
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.monitor import PROGRAM
@@ -69,10 +70,7 @@ class MonitorNode(TendonNode):
         self._channels: dict[str, list[str]] = {}
         for sensor in instrument.sensors:
             self._channels.setdefault(place_of(sensor.channel)[0], []).append(sensor.channel)
-        self._joints = {
-            'actuator': [f'pulley_{name}' for name in instrument.driven],
-            'pulley': [f'pulley_{name}' for name in instrument.inner],
-        }
+        self._joints = joint_names(instrument)
         for topic in sorted(self._channels):
             kind = JointState if topic in JOINT_TOPICS else WrenchStamped
             self.create_subscription(kind, topic, self._hearer(topic), DEPTH)
@@ -121,7 +119,7 @@ class MonitorNode(TendonNode):
 
     def _hearer(self, topic: str) -> Callable[[Message], None]:
         """Return the callback of a topic; it only keeps what it is given."""
-        joints = self._joints.get(JOINT_TOPICS.get(topic, ''), [])
+        joints = self._joints.get(JOINT_TOPICS.get(topic, ''), ())
 
         def on_message(message: Message) -> None:
             try:

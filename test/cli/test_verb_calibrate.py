@@ -33,6 +33,14 @@ def test_writes_a_file_and_says_what_differs(files, tmp_path, capsys):
     assert gravity.parameters['torque'] == pytest.approx(0.3, rel=0.01)
 
 
+def test_joints_without_names_go_by_their_order(files, nameless, tmp_path, capsys):
+    bag, first = files
+    out = tmp_path / 'second.yaml'
+    words = ['calibrate', str(nameless(bag)), '--instrument', str(first), '--out', str(out)]
+    assert main(words) == 0
+    assert 'torque 0.3' in capsys.readouterr().out
+
+
 def test_a_bag_of_another_rig_is_refused(files, tmp_path, capsys):
     bag, _ = files
     words = ['calibrate', str(bag), '--instrument', 'paper_rig', '--out', str(tmp_path / 'x.yaml')]

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from tendon_ros.bags.writer import write_recording
-from tendon_ros.cli.main import main
+from tendon_ros.base.errors import TendonError
+from tendon_ros.cli.main import build_parser, main
 from tendon_ros.diagnose.result import Diagnosis
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -34,6 +35,22 @@ def said(capsys, *words):
         status = stop.code
     streams = capsys.readouterr()
     return status, streams.out, streams.err
+
+
+def test_joints_without_names_go_by_their_order(bag, nameless, tmp_path, monkeypatch):
+    class SeenError(TendonError):
+        pass
+
+    def seen(recordings, *_, **__):
+        raise SeenError(','.join(sorted(recordings[0].channels)))
+
+    monkeypatch.setattr('tendon_ros.diagnose.session.diagnose', seen)
+    words = ['diagnose', str(nameless(bag)), *BODY, '--out', str(tmp_path / 'found')]
+    args = build_parser().parse_args(words)
+    with pytest.raises(
+        SeenError, match='actuator/pulley_body/effort,actuator/pulley_body/position'
+    ):
+        args.run(args)
 
 
 def test_writes_what_it_promises(bag, tmp_path, capsys):

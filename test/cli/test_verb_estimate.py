@@ -3,6 +3,7 @@
 from pathlib import Path
 import shutil
 
+import numpy as np
 import pytest
 
 from tendon_ros.bags.reader import read_recording
@@ -48,6 +49,17 @@ def test_estimates_stay_in_the_namespace_of_the_bag(bag, tmp_path):
     estimated = read_recording(tmp_path / 'new' / 'estimated')
     assert estimated.metadata['namespace'] == '/arm/left'
     assert 'estimate/force' in estimated
+
+
+def test_joints_without_names_go_by_their_order_as_in_the_node(bag, nameless, tmp_path):
+    assert estimate(bag, '--out', tmp_path / 'x.csv') == 0
+    assert estimate(nameless(bag), '--out', tmp_path / 'y.csv') == 0
+    named, unnamed = (
+        np.genfromtxt(tmp_path / name, delimiter=',', names=True)['estimateforce_N']
+        for name in ('x.csv', 'y.csv')
+    )
+    assert named.size > 10
+    np.testing.assert_array_equal(unnamed, named)
 
 
 def test_several_bags_go_into_a_folder(bag, tmp_path):
