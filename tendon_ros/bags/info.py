@@ -43,7 +43,7 @@ class TopicInfo:
 
 @dataclass(frozen=True)
 class BagInfo:
-    """A whole bag."""
+    """A whole bag: ``duration`` on the clock of the log, the one that all its messages share."""
 
     path: str
     storage: str
@@ -68,24 +68,25 @@ def summarise(path: Path | str) -> BagInfo:
     """
     path = Path(path)
     stamps: dict[str, list[int]] = {}
+    logged: list[int] = []
     with open_bag(path) as reader:
         types = {c.topic: c.msgtype for c in reader.connections}
         clocks = {name: 'header' if _has_header(kind) else 'log' for name, kind in types.items()}
         for name, log_time, cdr in messages(path, reader, reader.connections):
             own = _header_stamp(cdr) if clocks[name] == 'header' else log_time
             stamps.setdefault(name, []).append(own)
+            logged.append(log_time)
     files = storage_files(path)
     topics = tuple(
         _topic(name, types[name], clocks[name], np.array(stamps.get(name, []), dtype=np.int64))
         for name in sorted(types)
     )
-    every = [stamp for values in stamps.values() for stamp in (min(values), max(values))]
     return BagInfo(
         path=str(path),
         storage='mcap' if any('.mcap' in file.name for file in files) else 'sqlite3',
         size=sum(file.stat().st_size for file in files),
         messages=sum(topic.count for topic in topics),
-        duration=(max(every) - min(every)) / 1e9 if every else 0.0,
+        duration=(max(logged) - min(logged)) / 1e9 if logged else 0.0,
         topics=topics,
         metadata=bag_metadata(path),
     )

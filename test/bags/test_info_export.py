@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.bags.bag_writer import BagWriter
+from tendon_ros.bags.encoding import joint_layout
 from tendon_ros.bags.export import export_csv
 from tendon_ros.bags.info import summarise
 from tendon_ros.bags.writer import write_recording
@@ -35,6 +36,19 @@ def test_rates_gaps_jitter_and_backward_stamps(tmp_path):
     assert (b.clock, b.rate, b.jitter_p99) == ('log', pytest.approx(1.0), 0.0)
     assert info.messages == 20
     assert json.loads(json.dumps(info.as_dict()))['topics'][0]['count'] == 10
+
+
+def test_the_whole_duration_mixes_no_clocks(tmp_path):
+    # a driver whose clock starts at zero: the log knows the time of day
+    stamps = np.arange(11) * 100_000_000
+    cdrs = joint_layout(['a'], ['position']).encode(stamps, np.zeros((11, 1)))
+    with BagWriter(tmp_path / 'bag') as bag:
+        bag.add_topic('/a', 'sensor_msgs/msg/JointState')
+        bag.add_topic('/b', 'std_msgs/msg/String')
+        for stamp, cdr in zip(stamps.tolist(), cdrs, strict=True):
+            bag.write_raw('/a', cdr, 1_700_000_000 * 10**9 + stamp)
+            bag.write_raw('/b', b'\x00\x01\x00\x00' + bytes(4), 1_700_000_000 * 10**9 + stamp)
+    assert summarise(tmp_path / 'bag').duration == pytest.approx(1.0)
 
 
 def test_metadata_and_storage_are_told(recording, tmp_path):
