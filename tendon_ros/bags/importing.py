@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.bags.mapping import Mapping, Time
-from tendon_ros.bags.stamps import END, to_seconds, to_stamps
+from tendon_ros.bags.stamps import END, IntArray, to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.quantity import factor
@@ -62,7 +62,9 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     warnings: list[str] = []
     place = f'{path}: run {table.key}'
     epoch = round(mapping.epoch.timestamp() * 1e9)
-    common = _stamps(place, _time(path, table, mapping.time), epoch, warnings)
+    time = _time(path, table, mapping.time)
+    every = np.arange(time.size)
+    common = _stamps(place, time, every, epoch, warnings)
     channels = {}
     for name, source in mapping.channels.items():
         raw = table.column(source.column, f'{path}: channels.{name}')
@@ -71,12 +73,12 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
         value = value + source.offset
         if source.time is None:
-            time, usable = common
+            rows, (time, usable) = every, common
         else:
             own = _time(path, table, source.time)
-            taken = ~_repeated(own, value)
-            value = value[taken]
-            time, usable = _stamps(f'{place}: {name}', own[taken], epoch, warnings)
+            rows = np.flatnonzero(~_repeated(own, value))
+            value = value[rows]
+            time, usable = _stamps(f'{place}: {name}', own[rows], rows, epoch, warnings)
         keep = usable & np.isfinite(value)
         lost = usable & ~keep
         if not keep.any():
@@ -85,7 +87,7 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         if lost.any():
             warnings.append(
                 f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out (not '
-                f'a finite number), first row {1 + int(np.flatnonzero(lost)[0])} of the data'
+                f'a finite number), first row {1 + int(rows[lost][0])} of the data'
             )
         channels[name] = Channel(name, time[keep], value[keep])
     if not any(name.startswith('actuator/') for name in channels):
@@ -119,9 +121,19 @@ def _repeated(time: FloatArray, value: FloatArray) -> BoolArray:
 
 
 def _stamps(
-    place: str, time: FloatArray, epoch_ns: int, warnings: list[str]
+    place: str, time: FloatArray, rows: IntArray, epoch_ns: int, warnings: list[str]
 ) -> tuple[FloatArray, BoolArray]:
-    """Return stamps as a bag keeps them, and which rows have a usable one; tell of the others."""
+    """
+    Return stamps as a bag keeps them, and which of them are usable; tell of the others.
+
+    :param place: what they belong to, for the message.
+    :param time: as the file gives it [s], shape (n,).
+    :param rows: of the file's data, counted from 0, shape (n,).
+    :param epoch_ns: header stamp of time zero [ns].
+    :param warnings: what is told goes here.
+    :return: stamps [s] and whether they are usable, each shape (n,).
+    :raises RecordingError: where they reach beyond what a bag can hold.
+    """
     usable = np.isfinite(time)
     last = float(np.abs(time[usable]).max(initial=0.0))
     if last > LONGEST:
@@ -134,7 +146,7 @@ def _stamps(
     usable[usable] = _increasing(time[usable])
     _check_years(place, time[usable], epoch_ns)
     if not usable.all():
-        first = 1 + int(np.flatnonzero(~usable)[0])
+        first = 1 + int(rows[~usable][0])
         warnings.append(
             f'{place}: {np.count_nonzero(~usable)} of {time.size} rows left out (time not between '
             f'those of the rows beside, or not a number), first row {first} of the data'

@@ -478,6 +478,17 @@ def test_a_sample_of_a_slow_channel_that_comes_late_is_told(tmp_path):
     assert any('pulley/belt/velocity: 1 of 3 rows left out' in w for w in run.warnings)
 
 
+def test_rows_of_a_slow_channel_are_those_of_the_file(tmp_path):
+    rows = [[20 * i, 90, 1, 100_000 * (i // 5), i // 5] for i in range(40)]
+    rows[30][4] = 'nan'  # the seventh of its own samples; the row below repeats its stamp
+    text = '\n'.join(','.join(map(str, row)) for row in rows)
+    (tmp_path / 'x.csv').write_text(f'ms,deg,load,us,rpm\n{text}\n')
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
+    stamps, values = (w for w in run.warnings if 'pulley/belt/velocity' in w and 'left out' in w)
+    assert 'first row 32 of the data' in stamps
+    assert 'first row 31 of the data' in values
+
+
 @pytest.mark.parametrize('rate', [50, 10_000])
 def test_slow_and_fast_recordings(tmp_path, rate):
     time = np.arange(3 * rate) / rate
