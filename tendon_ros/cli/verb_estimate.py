@@ -40,6 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--channels',
+        default='',
         metavar='A,B,...',
         help='for static_balance: the channels to use, such as pulley/pulley_spindle/effort',
     )
@@ -48,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar='X',
         help='how far the force wanders in a second, N or N m, where that is known: the slower it '
-        'changes, the more measurements tell of it',
+        'changes, the more measurements tell of it; 0: nothing is known of it',
     )
     parser.add_argument(
         '--rate',
@@ -65,12 +66,15 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: parsed arguments.
     """
+    from functools import partial
+
     import numpy as np
 
     from tendon_ros.bags.export import export_csv
     from tendon_ros.bags.reader import read_recording
     from tendon_ros.bags.writer import write_recording
     from tendon_ros.base.errors import RecordingError
+    from tendon_ros.base.names import names_in
     from tendon_ros.cli.progress import shown
     from tendon_ros.estimate import build_observer, estimate_recording
     from tendon_ros.estimate.score import scored
@@ -80,15 +84,19 @@ def run(args: argparse.Namespace) -> None:
     if args.rate is not None and not args.rate > 0.0:
         raise RecordingError(f'--rate {args.rate:g}: must be positive')
     instrument = load_instrument(args.instrument)
-    channels = [c.strip() for c in args.channels.split(',')] if args.channels else None
-    chosen = {'channels': channels, 'wander': args.wander}
-    build_observer(instrument, args.method, **chosen)  # a mistake is told before any bag is read
+    fresh = partial(
+        build_observer,
+        instrument,
+        args.method,
+        channels=names_in(args.channels) or None,
+        wander=args.wander or None,
+    )
+    fresh()  # a mistake is told before any bag is read
     squares, samples, unit = 0.0, 0, ''
     for bag, out in _places(args):
         recording = read_recording(bag, args.namespace, joint_names(instrument))
         with shown(f'estimating {recording.name}') as progress:
-            observer = build_observer(instrument, args.method, **chosen)
-            estimated = estimate_recording(recording, observer, progress, args.rate)
+            estimated = estimate_recording(recording, fresh(), progress, args.rate)
         if out.suffix == '.csv':
             export_csv(estimated, out, overwrite=args.overwrite)
         else:

@@ -107,10 +107,11 @@ def run(args: argparse.Namespace) -> None:
 def _measured(instrument: Instrument, text: str) -> list[str]:
     """Return the channels that a user names, singly or by group."""
     from tendon_ros.base.errors import listed, RecordingError
+    from tendon_ros.base.names import names_in
 
     names = [s.channel for s in instrument.sensors]
     found: list[str] = []
-    for word in (w.strip() for w in text.split(',')):
+    for word in names_in(text) or [text]:
         if word not in GROUPS and word not in names:
             raise RecordingError(
                 f'--channels: {instrument.name} has no {word!r}; give {listed(GROUPS)}, or some '

@@ -12,6 +12,7 @@ from std_srvs.srv import Trigger
 
 from tendon_ros.bags.topics import JOINT_TOPICS, place_of
 from tendon_ros.base.errors import TendonError
+from tendon_ros.base.names import names_in
 from tendon_ros.estimate import build_observer, Estimate, Measurement, Observer, Synchroniser
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument
@@ -20,7 +21,7 @@ from tendon_ros.nodes.broadcast import Broadcast
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.estimator import PROGRAM
-from tendon_ros.nodes.settings import names_in, Value
+from tendon_ros.nodes.settings import Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 type Message = JointState | WrenchStamped
@@ -53,7 +54,7 @@ class EstimatorNode(TendonNode):
             'compile for some twenty seconds'
         )
         start = time.monotonic()
-        channels = names_in(values['channels'])
+        channels = names_in(str(values['channels']))
         self._observer: Observer = build_observer(
             instrument,
             self._method,

@@ -18,11 +18,12 @@ from tendon_ros.bags.bag_writer import BagWriter
 from tendon_ros.bags.qos import offered_qos
 from tendon_ros.bags.topics import TOPIC_TYPES
 from tendon_ros.base.errors import OutputError, RecordingError
+from tendon_ros.base.names import names_in
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.drops import Drops
 from tendon_ros.nodes.parameter_census import ParameterCensus
 from tendon_ros.nodes.recorder import PROGRAM
-from tendon_ros.nodes.settings import names_in, SettingError, Value
+from tendon_ros.nodes.settings import SettingError, Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 #: topics of the instrument beside those that carry channels; the last two are commands
@@ -59,7 +60,8 @@ class RecorderNode(TendonNode):
         self._refused: set[str] = set()
         own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
         self._own = frozenset(own)
-        self._extra = {self._full_name(topic) for topic in names_in(values['topics'])} - own.keys()
+        asked = names_in(str(values['topics']))
+        self._extra = {self._full_name(topic) for topic in asked} - own.keys()
         # last of what may fail: a corrected command shall find the path free
         path = str(values['out']) or time.strftime('rosbag2_%Y_%m_%d-%H_%M_%S')
         self._bag = BagWriter(

@@ -97,16 +97,6 @@ def checked(setting: Setting, value: object) -> Value:
     return value
 
 
-def names_in(value: Value) -> list[str]:
-    """
-    Return the names that a text lists.
-
-    :param value: names with commas between them, and perhaps spaces.
-    :return: those that are there.
-    """
-    return [name for part in str(value).split(',') if (name := part.strip())]
-
-
 def refuse_unknown(node: str, given: Iterable[str], known: Iterable[str]) -> None:
     """
     Raise where a parameter was given that the node does not have; ROS would ignore it.

@@ -108,6 +108,15 @@ def test_channels_may_have_spaces_between_them(bag, tmp_path):
     assert estimate(bag, '--out', tmp_path / 'x.csv', '--channels', channels) == 0
 
 
+def test_what_the_node_takes_is_taken_here(bag, tmp_path):
+    rig = load_instrument('bench_rig')
+    channels = ','.join(s.channel for s in rig.sensors if s.channel.startswith('actuator/'))
+    assert estimate(bag, '--out', tmp_path / 'x.csv', '--channels', f'{channels},') == 0
+    assert estimate(bag, '--out', tmp_path / 'y.csv', '--wander', '0') == 0
+    assert estimate(bag, '--out', tmp_path / 'z.csv') == 0
+    assert (tmp_path / 'y.csv').read_text() == (tmp_path / 'z.csv').read_text()
+
+
 def test_the_page_and_the_help_say_what_is_taken_without_a_method(capsys):
     words = ['estimate', 'bag', '--instrument', 'bench_rig', '--out', 'x']
     ours = build_parser().parse_args(words).method

@@ -66,7 +66,7 @@ def test_from_a_diagnosis(tmp_path, capsys):
     )
     path = tmp_path / 'diagnosis.json'
     path.write_text(diagnosis.model_dump_json(by_alias=True), encoding='utf-8')
-    run('--from', path, '--channels', 'motor,load_cell', '--out', tmp_path / 'x.csv')
+    run('--from', path, '--channels', 'motor, load_cell,', '--out', tmp_path / 'x.csv')
     out = capsys.readouterr().out
     assert 'an encoder on pulley 1' in out
     # the load cell was measured, so it is nothing to add
@@ -102,6 +102,7 @@ def test_other_causes_of_a_diagnosis_hold(tmp_path):
         (['--separate', 'pretension@pulley_1'], EffectError, 'cannot act at pulley_1'),
         (['--separate', 'pretension@cable_x'], EffectError, 'no place'),
         (['--separate', 'pretension@cable_12', '--channels', 'x'], RecordingError, "no 'x'"),
+        (['--separate', 'pretension@cable_12', '--channels', ''], RecordingError, "no ''"),
         (['--separate', 'pretension@cable_12', '--seconds', '0'], TrajectoryError, '--seconds'),
         (['--separate', 'pretension@cable_12', '--jobs', '-3'], RecordingError, '--jobs -3'),
         (['--from', 'nowhere.json'], RecordingError, 'nowhere.json'),
