@@ -30,6 +30,9 @@ from tendon_ros.base.errors import listed, OutputError, RecordingError
 
 Storage = Literal['mcap', 'sqlite3']
 
+#: how much recorded time a killed process may lose [ns]
+FLUSH_NS = 10**9
+
 #: metadata of an unfinished bag; removed when the bag is closed
 SIDECAR = 'custom_data.json'
 
@@ -60,7 +63,6 @@ class BagWriter:
     :param path: folder of the bag; must not exist.
     :param storage: ``mcap`` or ``sqlite3``.
     :param compress: compress the chunks of an MCAP with zstd; every MCAP reader knows it.
-    :param flush_seconds: how much recorded time a killed process may lose [s].
     :param metadata: text to keep in the bag's ``custom_data``.
     :raises RecordingError: where there is no such storage.
     :raises OutputError: where the bag cannot be created.
@@ -72,13 +74,11 @@ class BagWriter:
         *,
         storage: Storage = 'mcap',
         compress: bool = True,
-        flush_seconds: float = 1.0,
         metadata: Mapping[str, str] | None = None,
     ) -> None:
         self.path = Path(path)
         if storage not in _PLUGINS:
             raise RecordingError(f'{path}: storage {storage!r} unknown; use {listed(_PLUGINS)}')
-        self._flush_ns = int(flush_seconds * 1e9)
         self._flushed_ns: int | None = None
         self._connections: dict[str, Connection] = {}
         self._metadata = {**(metadata or {}), **CONVENTIONS}
@@ -111,11 +111,6 @@ class BagWriter:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-    @property
-    def metadata(self) -> Mapping[str, str]:
-        """The text that goes into ``custom_data``."""
-        return dict(self._metadata)
 
     def set_metadata(self, key: str, value: str) -> None:
         """
@@ -194,7 +189,7 @@ class BagWriter:
             self._writer.write(connection, log_time_ns, cdr)
             self.counts[topic] += 1
             # A clock that was set back counts as elapsed too, or nothing would be flushed.
-            if abs(log_time_ns - self._flushed_ns) >= self._flush_ns:
+            if abs(log_time_ns - self._flushed_ns) >= FLUSH_NS:
                 self._flush()
                 self._flushed_ns = log_time_ns
         except _REFUSED as error:
