@@ -53,14 +53,14 @@ class ContactAngleObserver(Observer):
 
     def _update(self, measurement: Measurement, gap: float) -> Estimate:
         now = np.array([measurement.values[name] for name in self.needs])
-        if not self._before.size:
+        before = self._before
+        if not before.size:
             # the first measurement finds the mechanics at rest in the rigid pose of its angles
             pose = dict(zip(self._instrument.driven, now, strict=True))
             self._runner.rest(pose)
-            self._before = now
-            gap = SETTLING
+            before, gap = now, SETTLING
         start = self._runner.time
-        path = Signals.straight(start, gap, self._before, now)
+        path = Signals.straight(start, gap, before, now)
         row = self._runner.glide(start + gap, path)
         self._before = now
         angle = row.angle[0]

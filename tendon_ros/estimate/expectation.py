@@ -90,38 +90,53 @@ class Expectation:
             covariance *= self._share(gap) ** 2
         return Expected(kept * self._mean, _root(covariance))
 
+    def deviation(self, covariance: FloatArray, expected: Expected) -> float:
+        """
+        Return the deviation of the force of an estimate.
+
+        :param covariance: of force and frictions, that the measurement left.
+        :param expected: what it was weighed with.
+        :return: [N or N m].
+        """
+        # what a model gets wrong does not average out
+        return max(math.sqrt(_variance(covariance)), self._told(covariance, expected))
+
     def taken(
         self, mean: FloatArray, covariance: FloatArray, expected: Expected, unsure: FloatArray,
         gap: float,
-    ) -> float:  # fmt: skip
+    ) -> None:  # fmt: skip
         """
-        Take an estimate in, and return the deviation of its force.
+        Take an estimate in.
 
         :param mean: force and frictions, shape (1 + rows,).
         :param covariance: that the measurement left of them.
         :param expected: what it was weighed with.
         :param unsure: as for :meth:`foreseen`.
         :param gap: the time since the last one [s].
-        :return: [N or N m].
         """
-        variance = max(float(covariance[0, 0]), 1e-300)
-        # of a force that no torque feels nothing is ever known
-        alone = 1.0 / max(1.0 / variance - expected.force**-2, 1.0 / ANYWHERE**2)
-        self._best = max(self._least, min(self._best, math.sqrt(alone)))
-        # what a model gets wrong does not average out
-        spread = max(math.sqrt(variance), self._best)
+        self._best = self._told(covariance, expected)
         self._mean, self._covariance = mean, covariance.copy()
         if self._wander is None:
-            self._covariance[0, 0] = spread**2
+            self._covariance[0, 0] = self.deviation(covariance, expected) ** 2
         elif self._begun and gap > 0.0:
             self._covariance /= self._share(gap) ** 2
         self._unsure = unsure
         self._begun = True
-        return spread
+
+    def _told(self, covariance: FloatArray, expected: Expected) -> float:
+        """Return the deviation that the best single measurement leaves, this one included."""
+        # of a force that no torque feels nothing is ever known
+        known = max(1.0 / _variance(covariance) - expected.force**-2, 1.0 / ANYWHERE**2)
+        return max(self._least, min(self._best, math.sqrt(1.0 / known)))
 
     @staticmethod
     def _share(gap: float) -> float:
         return math.sqrt(min(1.0, gap / STEADY))
+
+
+def _variance(covariance: FloatArray) -> float:
+    """Return that of the force."""
+    return max(float(covariance[0, 0]), 1e-300)
 
 
 def _root(covariance: FloatArray) -> FloatArray:

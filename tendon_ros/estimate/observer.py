@@ -6,10 +6,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tendon_ros.base.errors import RecordingError
+from tendon_ros.base.errors import RecordingError, TendonError
 from tendon_ros.estimate.channels import doubt
+from tendon_ros.estimate.reach import Reach
 from tendon_ros.estimate.readings import Readings
 from tendon_ros.model.instrument import Instrument, Sensor
+
+#: measurements in a row that the model cannot go on to; after more what it carries is wrong
+LOST = 20
 
 
 @dataclass(frozen=True)
@@ -43,8 +47,9 @@ class Observer(ABC):
     Turns measurements into estimates, in the order of their stamps.
 
     Subclasses name the channels that they need, and never see a measurement that lacks one, is not
-    finite, or does not come after the one before: :meth:`update` refuses those first. What they
-    see is what was there, by all that the instrument's file says of its sensors and motors.
+    finite, is where no motor can be, or does not come after the one before: :meth:`update` refuses
+    those first. What they see is what was there, by all that the instrument's file says of its
+    sensors and motors. Where they raise they leave what they carry as it was.
 
     :param instrument: the network.
     """
@@ -55,6 +60,8 @@ class Observer(ABC):
     def __init__(self, instrument: Instrument) -> None:
         self._last_ns: int | None = None
         self._readings = Readings(instrument)
+        self._reach = Reach(instrument)
+        self._failed = 0
 
     def update(self, measurement: Measurement) -> Estimate:
         """
@@ -62,8 +69,11 @@ class Observer(ABC):
 
         :param measurement: at a stamp after all those before.
         :return: the estimate at that stamp.
-        :raises RecordingError: on a missing or non-finite value, or a stamp that steps back; the
-            observer's state is then unchanged and the next good measurement is welcome.
+        :raises RecordingError: on a missing or non-finite value, an angle where no motor can be,
+            or a stamp that steps back; the observer's state is then unchanged and the next good
+            measurement is welcome.
+        :raises TendonError: where the model cannot go on to what was measured; the state is then
+            unchanged, too, but for the last of many in a row, after which all begins anew.
         """
         for name in self.needs:
             value = measurement.values.get(name)
@@ -82,13 +92,23 @@ class Observer(ABC):
         if self._last_ns is not None:
             gap = (measurement.stamp_ns - self._last_ns) * 1e-9
         true = Measurement(measurement.stamp_ns, self._readings.truth(measurement.values))
-        estimate = self._update(true, gap)
+        self._reach.check(self.needs, true.values)
+        try:
+            estimate = self._update(true, gap)
+        except TendonError:
+            self._failed += 1
+            if self._failed > LOST:
+                self._failed = 0
+                self._reset()
+            raise
+        self._failed = 0
         self._last_ns = measurement.stamp_ns
         return estimate
 
     def reset(self) -> None:
         """Forget everything: the next measurement is the first."""
         self._last_ns = None
+        self._failed = 0
         self._reset()
 
     def _doubt(self, sensor: Sensor) -> float:

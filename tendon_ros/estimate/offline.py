@@ -74,13 +74,17 @@ def estimate_recording(
     :param progress: called now and then with the part that is done, 0 to 1.
     :param rate: as for :func:`measurements`.
     :return: the recording and the channels ``estimate/...``.
-    :raises RecordingError: where a needed channel is missing.
+    :raises RecordingError: where a needed channel is missing, or the observer refuses a sample.
     """
     times: list[float] = []
     columns: dict[str, list[float]] = {}
     span = max(recording.end - recording.start, 1e-9)
     for n, measurement in enumerate(measurements(recording, observer.needs, rate)):
-        estimate = observer.update(measurement)
+        try:
+            estimate = observer.update(measurement)
+        except RecordingError as error:
+            at = (measurement.stamp_ns - recording.epoch_ns) * 1e-9
+            raise RecordingError(f'{recording.name}: at {at:.6f} s: {error}') from error
         times.append((estimate.stamp_ns - recording.epoch_ns) * 1e-9)
         for name, value in estimate.values.items():
             columns.setdefault(name, []).append(value)

@@ -108,7 +108,7 @@ class Rubbing:
         friction: FloatArray,
     ) -> FloatArray:
         """
-        Return how uncertain each pulley's friction is; to be asked at every measurement.
+        Return how uncertain each pulley's friction is.
 
         :param before: angles at the last measurement [rad], shape (pulleys,).
         :param angle: the same now, up to which the memories were carried.
@@ -120,11 +120,24 @@ class Rubbing:
         span = np.maximum(np.abs(angle - before), LEAST)
         part = np.minimum(float(self._unsure.max()) / span, 1.0)
         turning = np.minimum(np.abs(change) * part, 2.0 * np.abs(friction))
-        late = before if self._late is None else self._late
-        self._late = late + (angle - late) * gap / (gap + TURNED)
-        gone = (angle - self._late) / np.maximum(self._unsure, LEAST)
+        gone = (angle - self._followed(before, angle, gap)) / np.maximum(self._unsure, LEAST)
         resting = self._statics.friction_beside(angle, self._unsure) * np.exp(-0.5 * gone**2)
         return np.asarray(np.maximum(turning, resting))
+
+    def carry(self, before: FloatArray, angle: FloatArray, gap: float) -> None:
+        """
+        Take a measurement in.
+
+        :param before: as for :meth:`doubt`.
+        :param angle: the same now.
+        :param gap: the time between [s].
+        """
+        self._late = self._followed(before, angle, gap)
+
+    def _followed(self, before: FloatArray, angle: FloatArray, gap: float) -> FloatArray:
+        """Return where the pulleys have come from, seen from these angles."""
+        late = before if self._late is None else self._late
+        return np.asarray(late + (angle - late) * gap / (gap + TURNED))
 
 
 def doubts_after(
@@ -136,7 +149,7 @@ def doubts_after(
     gap: float,
 ) -> list[FloatArray]:
     """
-    Return how uncertain friction would be after a motion; to be asked at every measurement.
+    Return how uncertain friction would be after a motion.
 
     :param frictions: of the same pulleys, on several grounds of uncertainty.
     :param statics: that carries their memories, which stay where they are.

@@ -148,9 +148,11 @@ class StaticBalanceObserver(Observer):
         self._exact = self._equations.doubt
         self._rest.reset()
         self._refused = 0
+        self._waited = 0.0  # since the last measurement that balanced [s]
         self._begun = False
 
     def _update(self, measurement: Measurement, gap: float) -> Estimate:
+        gap += self._waited
         angle = self._angle.copy()
         for name, i in self._angles:
             angle[i] = measurement.values[name]
@@ -171,30 +173,35 @@ class StaticBalanceObserver(Observer):
         same = self._rest.same(before, angle, read, unsure)
         expected = self._expectation.foreseen(gap, unsure, same)
         found, covariance = self._solve(angle, read, expected)
-        if moving:
-            self._velocity = self._moved(angle)
-        doubts = doubts_after(self._frictions, self._statics, before, angle, self._velocity, gap)
+        velocity = self._moved(angle) if moving else self._velocity
+        doubts = doubts_after(self._frictions, self._statics, before, angle, velocity, gap)
         trembles, doubt = (self._equations.on_pulleys @ doubts[k] for k in (0, -1))
         # what the model misses of angles leaves friction wrong by the same for as long as a pulley
         # rests, what noise makes of them by another each time
         unsure = np.sqrt(np.maximum(doubt**2 - trembles**2, 0.0))
-        self._exact = np.hypot(self._equations.doubt, trembles)
+        weighed, self._exact = self._exact, np.hypot(self._equations.doubt, trembles)
         if np.any(np.maximum(doubt, self._unsure) > BALANCE):  # seen only now: once more
             same = self._rest.same(before, angle, read, unsure)
             expected = self._expectation.foreseen(gap, unsure, same)
             found, covariance = self._solve(angle, read, expected)
-        self._statics.carry(before, angle, gap)
-        self._refused = self._refused + 1 if self._strained > REFUSED else 0
-        if self._refused > IN_A_ROW:
-            raise RecordingError(
-                f'{", ".join(self.needs)}: no angles and force balance what was measured; a unit '
-                f'or a sign may be wrong{self._narrow}'
-            )
-        self._rest.carry(before, angle, read)
-        self._angle = angle
-        self._unsure = unsure
-        self._begun = True
-        spread = self._expectation.taken(found, covariance, expected, unsure, gap)
+        spread = self._expectation.deviation(covariance, expected)
+        if self._strained <= REFUSED:
+            self._statics.carry(before, angle, gap)
+            for friction in self._frictions:
+                friction.carry(before, angle, gap)
+            self._rest.carry(before, angle, read)
+            self._expectation.taken(found, covariance, expected, unsure, gap)
+            self._angle, self._velocity, self._unsure = angle, velocity, unsure
+            self._refused, self._waited, self._begun = 0, 0.0, True
+        else:  # what does not balance says nothing of where the pulleys are, and leads nowhere
+            self._exact = weighed
+            self._refused += 1
+            if self._refused > IN_A_ROW:
+                raise RecordingError(
+                    f'{", ".join(self.needs)}: no angles and force balance what was measured; a '
+                    f'unit or a sign may be wrong{self._narrow}'
+                )
+            self._waited = gap
         values = {
             self._operating.channel: float(found[0]),
             # what does not balance is known so much less
@@ -238,7 +245,8 @@ class StaticBalanceObserver(Observer):
         inverse = np.linalg.solve(upper, orthogonal.T)
         inverse = expected.spread @ inverse[len(self._free) :]
         through = inverse[:, : len(by_fixed)] @ (by_fixed * self._sigma_angle)
-        self._strained = math.sqrt(max(1.0, cost / len(self._exact)))
+        # what overflows balances nothing: no number is to stay none
+        self._strained = math.sqrt(max(cost / len(self._exact), 1.0))
         found = expected.mean + expected.spread @ place
         return found, inverse @ inverse.T + through @ through.T
 

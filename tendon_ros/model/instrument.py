@@ -95,6 +95,10 @@ class Controller:
     derivative: Literal['error', 'reading'] = 'error'
 
 
+#: times a position limit: further off, a unit or a reading is wrong and not the rig another
+FAR = 5.0
+
+
 @dataclass(frozen=True)
 class Motor:
     """
@@ -119,6 +123,16 @@ class Motor:
     def largest(self) -> float:
         """The largest torque that it gives [N m]."""
         return min(self.torque_limit, (self.controller or Controller()).limit)
+
+    def cannot_be(self, angle: float) -> bool:
+        """
+        Return whether an angle is so far beyond the limits that no motion leads there.
+
+        :param angle: of the pulley [rad].
+        :return: whether; never where the limits are open.
+        """
+        low, high = self.position_limit
+        return abs(angle) > FAR * max(abs(low), abs(high))
 
 
 #: unit of a contact's damping, by its law

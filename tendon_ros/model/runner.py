@@ -162,10 +162,11 @@ class Runner:
         :param end: [s], after the present time.
         :param signals: prescribed motion, torques and references.
         :return: one row, at ``end``.
-        :raises SimulationError: where it diverges.
+        :raises SimulationError: where it diverges; all is then as it was.
         """
         at = self.structure
         before = self._tried
+        kept = self.kept()
         row = self.engine.zeros(self.width)
         status = self.engine.module.glide(
             self._m,
@@ -179,6 +180,7 @@ class Runner:
             row,
         )
         if status != 0:
+            self.back(kept)
             raise SimulationError(f'{self.instrument.name}: the model diverged near {end:.4f} s')
         table = np.array(row, dtype=np.float64).reshape(1, -1)
         return Rows(self.instrument, at, table, self._tried - before)

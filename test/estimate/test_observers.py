@@ -1,12 +1,14 @@
 """The three methods find the force and the inner pulleys, and say how well they know them."""
 
+from contextlib import suppress
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
 
 from tendon_ros.bags.reader import read_recording
-from tendon_ros.base.errors import InstrumentError, RecordingError
+from tendon_ros.base.errors import InstrumentError, RecordingError, SimulationError, TendonError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate import build_observer, estimate_recording, Measurement, METHODS
 from tendon_ros.estimate.offline import measurements
@@ -126,6 +128,78 @@ def test_bad_measurements_are_refused_and_do_no_harm(method, bench, pressing):
     with pytest.raises(RecordingError, match='does not come after'):
         observer.update(some[1])
     assert observer.update(some[3]) == untouched.update(some[3])
+
+
+def unbounded(rig):
+    """Return a rig whose file says nothing of where its motors can be."""
+    open_end = (-math.inf, math.inf)
+    return replace(rig, motors=tuple(replace(m, position_limit=open_end) for m in rig.motors))
+
+
+def with_one(measurement, channel, value):
+    return replace(measurement, values={**measurement.values, channel: value})
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_an_angle_where_no_motor_can_be_is_refused_and_does_no_harm(method, bench, pressing):
+    observer, untouched = build_observer(bench, method), build_observer(bench, method)
+    for m in list(measurements(pressing, observer.needs))[:20]:
+        with pytest.raises(RecordingError, match=r'100 rad is far beyond .* motor L in bench_rig'):
+            observer.update(with_one(m, 'actuator/pulley_L/position', 100.0))
+        assert observer.update(m) == untouched.update(m)
+
+
+def test_what_does_not_balance_leads_nowhere(bench, pressing):
+    """One wild angle spoils its own estimate, and no other."""
+    rig = unbounded(bench)
+    rubbing = replace(
+        rig, effects=(EffectUse('tension_friction', 'pulley_3', {'coefficient': 0.1}),)
+    )
+    observer, untouched = (build_observer(rubbing, 'static_balance') for _ in range(2))
+    some = list(measurements(pressing, observer.needs))[:150]
+    for m in some[:100]:
+        assert observer.update(m) == untouched.update(m)
+    wild = observer.update(with_one(some[100], 'actuator/pulley_M/position', 1000.0))
+    assert wild.values['estimate/force_std'] > 1e3
+    for m in some[101:]:
+        assert observer.update(m) == untouched.update(m)
+
+
+@pytest.mark.parametrize('method', METHODS)
+def test_an_observer_that_began_wildly_begins_anew(method, bench, pressing):
+    """Where the file bounds no angle the first may be any; what follows soon tells better."""
+    observer = build_observer(unbounded(bench), method)
+    some = list(measurements(pressing, observer.needs))[:100]
+    some[0] = with_one(some[0], 'actuator/pulley_M/position', 1e12)
+    for m in some:
+        with suppress(TendonError):
+            estimate = observer.update(m)
+    assert estimate.stamp_ns == some[-1].stamp_ns
+    assert abs(estimate.values['estimate/force']) < 3.0
+
+
+def test_a_torque_that_the_model_cannot_follow_does_no_harm(bench, pressing):
+    """What friction remembers is as it was before the model diverged."""
+    use = EffectUse('presliding_friction', 'pulley_3', {'torque': 0.05, 'angle': 0.1})
+    rubbing = replace(bench, effects=(use,))
+    observer, untouched = build_observer(rubbing, 'dynamic'), build_observer(rubbing, 'dynamic')
+    some = list(measurements(pressing, observer.needs))[:60]
+    for m in some[:30]:
+        assert observer.update(m) == untouched.update(m)
+    with pytest.raises(SimulationError, match='diverged'):
+        observer.update(with_one(some[30], 'actuator/pulley_M/effort', 1e20))
+    for m in some[31:]:
+        assert observer.update(m) == untouched.update(m)
+
+
+def test_a_sample_that_is_refused_offline_is_told_where_it_is(bench, pressing):
+    motor = pressing['actuator/pulley_M/position']
+    value = motor.value.copy()
+    value[7] = 100.0
+    wild = pressing.with_channels([Channel(motor.name, motor.time, value)])
+    words = rf'{wild.name}: at {motor.time[7]:.6f} s: actuator/pulley_M/position: 100 rad'
+    with pytest.raises(RecordingError, match=words):
+        estimate_recording(wild, build_observer(bench, 'dynamic'))
 
 
 def test_channels_that_cannot_tell_the_force_are_refused(bench):

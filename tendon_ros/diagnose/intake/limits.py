@@ -19,9 +19,7 @@ from tendon_ros.model.instrument import Instrument, Motor
 
 #: overshoot and an encoder's offset that are forgiven [share of the limits' width]
 FORGIVEN = 0.15
-#: times a limit: further off, a unit is more likely than another rig
-LARGE = 5.0
-#: the same of a torque, whose unit a file may have guessed
+#: times a limit of torque: further off, a unit is more likely than another rig
 HUGE = 20.0
 
 
@@ -75,7 +73,7 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
         found = _span(recording, name)
         if _within(found, motor):
             continue
-        far = np.abs(found).max() > LARGE * max(abs(low), abs(high))
+        far = motor.cannot_be(float(np.abs(found).max()))
         wished = asked_of(name)
         if not far and wished in recording and _within(_span(recording, wished), motor):
             continue
