@@ -20,6 +20,7 @@ from tendon_ros.diagnose.watch_stream import StampError
 from tendon_ros.estimate import Measurement
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.joints import joint_names
+from tendon_ros.nodes.arrivals import Arrivals
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.monitor import PROGRAM
@@ -28,9 +29,6 @@ from tendon_ros.nodes.settings import SettingError, Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 type Message = JointState | WrenchStamped
-
-#: a stream that pauses for so long has stopped [s]
-STALE = 1.0
 
 #: measurements that may wait while the machine is busy: none shall be left out
 DEPTH = 500
@@ -66,18 +64,16 @@ class MonitorNode(TendonNode):
         self._warned = False
         self._busy = 0.0
         self._counted_at = time.monotonic()
-        self._arrived: dict[str, float] = {}
-        self._channels: dict[str, list[str]] = {}
-        for sensor in instrument.sensors:
-            self._channels.setdefault(place_of(sensor.channel)[0], []).append(sensor.channel)
+        measured = {sensor.channel for sensor in instrument.sensors}
+        self._arrivals = Arrivals(measured)
+        topics = sorted({place_of(channel)[0] for channel in measured})
         self._joints = joint_names(instrument)
-        for topic in sorted(self._channels):
+        for topic in topics:
             kind = JointState if topic in JOINT_TOPICS else WrenchStamped
             self.create_subscription(kind, topic, self._hearer(topic), DEPTH)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.get_logger().info(
-            f'ready after {time.monotonic() - start:.1f} s, listening to '
-            f'{", ".join(sorted(self._channels))}'
+            f'ready after {time.monotonic() - start:.1f} s, listening to {", ".join(topics)}'
         )
 
     def begin(self) -> None:
@@ -90,7 +86,7 @@ class MonitorNode(TendonNode):
         load, self._busy = self._busy / (now - self._counted_at), 0.0
         self._counted_at = now
         report = self._watch.report
-        silent = self._silent(now)
+        silent = self._arrivals.silent(now)
         name = self.get_fully_qualified_name().lstrip('/')
         self._diagnostics.publish(channels(report, silent, name, time.time_ns()))
         level, text, details = whole(report)
@@ -108,29 +104,22 @@ class MonitorNode(TendonNode):
             level, text = Level.ERROR, next(iter(silent.values()))
         return level, text, details
 
-    def _silent(self, now: float) -> dict[str, str]:
-        """Return the channels of topics that have stopped, with sentences."""
-        return {
-            channel: f'{topic}: nothing for {now - at:.1f} s; see whether its driver still runs'
-            for topic, at in self._arrived.items()
-            if now - at > STALE
-            for channel in self._channels[topic]
-        }
-
     def _hearer(self, topic: str) -> Callable[[Message], None]:
         """Return the callback of a topic; it only keeps what it is given."""
         joints = self._joints.get(JOINT_TOPICS.get(topic, ''), ())
 
         def on_message(message: Message) -> None:
+            values: Mapping[str, float] = {}
             try:
                 values = values_of(topic, message, joints)
                 self._watch.update(Measurement(from_stamp(message.header.stamp), values))
-                self._arrived[topic] = time.monotonic()
             except StampError as error:
+                values = {}  # none of them was kept
                 mend = f'call {self.get_fully_qualified_name()}/reset to begin anew'
                 self.complain('stamps that step back', f'{topic}: {error}; {mend}')
             except TendonError as error:
                 self.complain('measurements left out', f'{topic}: {error}')
+            self._arrivals.note(values, time.monotonic())
 
         return on_message
 
@@ -166,7 +155,7 @@ class MonitorNode(TendonNode):
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         # by the thread that compares, which may be in the middle of it
         self._anew.set()
-        self._arrived.clear()
+        self._arrivals.clear()
         response.success = True
         response.message = 'begins anew'
         return response

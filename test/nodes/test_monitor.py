@@ -75,8 +75,8 @@ def test_what_cannot_be_used_is_said(client, start):
     def whole():
         return last(heard, 'unwatched/monitor')
 
-    def send(stamp, position, names=('pulley_M', 'pulley_L')):
-        message = JointState(name=list(names), position=position)
+    def send(stamp, position, names=('pulley_M', 'pulley_L'), effort=()):
+        message = JointState(name=list(names), position=position, effort=effort)
         message.header.stamp.sec = stamp
         measured.publish(message)
 
@@ -91,6 +91,14 @@ def test_what_cannot_be_used_is_said(client, start):
     send(999, [0.0, 0.0])
     client.wait(lambda: value(whole(), 'stamps that step back') == '1', 'stepping back was not')
     monitor.wait_for('reset to begin anew')
+    for second in range(1002, 1005):
+        so_far = len(heard)
+        client.wait(lambda n=so_far: len(heard) > n + 1, 'no diagnostics any more')
+        send(second, [0.0, 0.0], effort=[math.nan, math.nan])
+        reached = str(second - 999)
+        client.wait(lambda n=reached: value(whole(), 'measurements left out') == n, 'no complaint')
+        assert whole().level == WARN, whole().message
+    assert 'effort is nan; it is left out' in whole().message
     assert client.call('/unwatched/monitor/reset', Trigger, Trigger.Request()).success
 
 
