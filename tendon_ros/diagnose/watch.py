@@ -36,8 +36,8 @@ State = Literal['waiting', 'resting', 'learning', 'watching']
 
 #: topics of one instant arrive one after the other: so long is waited for the last [s]
 SLACK = 0.2
-#: a channel so far behind the motors has stopped, or has another clock [s]
-BEHIND = 1.0
+#: a channel so far behind the motors has stopped, or has another clock; so far ahead it has [s]
+ASTRAY = 1.0
 #: reading errors that motion must span before it counts as motion
 MOVED = 30.0
 #: a gap that grows is noticed after so long, or somewhat later [s]
@@ -168,7 +168,7 @@ class Watch:
         end_ns = self._end_ns()
         start_ns = end_ns - round(self.settings.window * 1e9)
         recording = self._streams.window(start_ns, end_ns)
-        faults = self._behind(end_ns)
+        faults = self._astray(end_ns)
         held = {n: c for n, c in recording.channels.items() if n not in faults}
         old = self._report
         new = replace(old, end_ns=end_ns, state='waiting', faults=faults)
@@ -204,15 +204,24 @@ class Watch:
             return 0
         return (now - round(SLACK * 1e9)) // self._period_ns * self._period_ns
 
-    def _behind(self, end_ns: int) -> dict[str, str]:
-        """Return the channels that have stopped, with sentences."""
+    def _astray(self, end_ns: int) -> dict[str, str]:
+        """Return the channels that have stopped or have another clock, with sentences."""
         faults = {}
+        now_ns = self._streams.now_ns or end_ns
         for name in self._streams.heard:
-            late = (end_ns - (self._streams.newest(name) or 0)) * 1e-9
-            if name not in self._motors and late > BEHIND:
+            newest = self._streams.newest(name) or 0
+            late, early = (end_ns - newest) * 1e-9, (newest - now_ns) * 1e-9
+            if name in self._motors:
+                continue
+            if late > ASTRAY:
                 faults[name] = (
                     f'{name}: its stamps end {late:.1f} s before those of the motors; see whether '
                     'its driver still runs, on the same clock'
+                )
+            elif early > ASTRAY:
+                faults[name] = (
+                    f'{name}: its stamps are {early:.1f} s ahead of those of the motors; see that '
+                    'both have the same clock'
                 )
         return faults
 

@@ -255,6 +255,27 @@ def test_a_channel_that_stops_is_named_and_the_others_go_on(rig, changing):
     assert 'actuator/pulley_M/effort' in {gap.channel for gap in report.gaps}
 
 
+@pytest.mark.parametrize(
+    ('off', 'words'),
+    [
+        (20.0, 'its stamps are 20.0 s ahead of those of the motors; see that both have the same'),
+        (-20.0, 'its stamps end 19.8 s before those of the motors'),
+    ],
+)
+def test_a_channel_with_another_clock_is_named_in_either_direction(rig, changing, off, words):
+    """As it arrives: what is stamped otherwise still comes beside the motors."""
+    watch = Watch(rig)
+    for measurement in topics_of(only_until(changing, 8.0)):
+        away = round(off * 1e9) if 'load_cell/force' in measurement.values else 0
+        watch.update(replace(measurement, stamp_ns=measurement.stamp_ns + away))
+        if watch.due:
+            report = watch.look()
+    assert words in report.faults['load_cell/force']
+    gaps = {gap.channel for gap in report.gaps}
+    assert 'actuator/pulley_M/effort' in gaps
+    assert 'load_cell/force' not in gaps
+
+
 def test_after_a_hole_in_the_motion_a_window_fills_again(rig, changing):
     hole = {
         n: Channel(n, c.time[keep], c.value[keep])
