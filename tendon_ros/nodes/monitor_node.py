@@ -129,6 +129,7 @@ class MonitorNode(TendonNode):
             if self._anew.is_set():
                 self._anew.clear()
                 self._watch.reset()
+                self._warned = False  # nothing is compared yet, so no gap is small again
             if self._watch.due:
                 self._look()
 

@@ -59,6 +59,9 @@ def test_an_effect_that_comes_live_is_a_warning_at_its_place(client, start):
     grown = last(heard, 'watched/monitor: load_cell/force')
     assert float(value(grown, 'gap [N]')) > 0.0
     monitor.wait_for('the gap has grown')
+    assert client.call('/watched/monitor/reset', Trigger, Trigger.Request()).success
+    client.wait(lambda: state() == 'learning', 'a reset does not begin anew')
+    assert 'the gap is again' not in monitor.said  # nothing was compared
     assert simulator.stop() == 0
     client.wait(lambda: whole().level == ERROR, 'silence is no error')
     assert 'nothing for' in whole().message
