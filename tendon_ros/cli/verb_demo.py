@@ -88,6 +88,7 @@ def _live(folder: Path) -> LiveRig:
     import numpy as np
 
     from tendon_ros.bags.reader import read_recording
+    from tendon_ros.bags.stamps import to_stamps
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.cli.progress import shown
     from tendon_ros.cli.rig_session import record_rig
@@ -107,7 +108,7 @@ def _live(folder: Path) -> LiveRig:
     if score is None:
         raise RecordingError(f'{bag}: no live estimates; see the logs beside it')
     live = recording['estimate/force']
-    ours, theirs = (np.round(c.time * 1e9).astype(np.int64) for c in (again, live))
+    ours, theirs = (to_stamps(c.time, recording.epoch_ns) for c in (again, live))
     _, i, j = np.intersect1d(ours, theirs, return_indices=True)
     difference = float(np.max(np.abs(again.value[i] - live.value[j])))
     return LiveRig(recording, score, difference, len(j), len(recording['load_cell/force'].time))

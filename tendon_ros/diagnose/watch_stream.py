@@ -8,6 +8,7 @@ from threading import Lock
 
 import numpy as np
 
+from tendon_ros.bags.stamps import to_seconds
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement
@@ -130,9 +131,7 @@ class Streams:
             inside = (stamp >= start_ns) & (stamp < end_ns)
             if inside.sum() > 1:
                 value = np.array([value for _, value in row])[inside]
-                channels[name] = Channel(
-                    name, (stamp[inside] - start_ns).astype(np.float64) * 1e-9, value
-                )
+                channels[name] = Channel(name, to_seconds(stamp[inside], start_ns), value)
         begin = max(
             (_after_holes(channels[n]) for n in self._motors if n in channels), default=0.0
         )

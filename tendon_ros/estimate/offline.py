@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.bags.stamps import to_seconds, to_stamps
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement, Observer
@@ -30,7 +31,7 @@ def measurements(
                 f'{recording.name}: no channel {name!r}, which this method needs; it has '
                 f'{listed(recording.channels)}'
             )
-    stamps = [np.round(recording[name].time * 1e9).astype(np.int64) for name in needs]
+    stamps = [to_stamps(recording[name].time, recording.epoch_ns) for name in needs]
     common = stamps[0]
     for other in stamps[1:]:
         common = np.intersect1d(common, other, assume_unique=True)
@@ -47,7 +48,7 @@ def measurements(
     ]
     for n, stamp in enumerate(common):
         values = {name: float(column[n]) for name, column in zip(needs, columns, strict=True)}
-        yield Measurement(recording.epoch_ns + int(stamp), values)
+        yield Measurement(int(stamp), values)
 
 
 def _thinned(stamps: NDArray[np.int64], rate: float) -> NDArray[np.int64]:
@@ -76,21 +77,20 @@ def estimate_recording(
     :return: the recording and the channels ``estimate/...``.
     :raises RecordingError: where a needed channel is missing, or the observer refuses a sample.
     """
-    times: list[float] = []
+    stamps: list[int] = []
     columns: dict[str, list[float]] = {}
     span = max(recording.end - recording.start, 1e-9)
     for n, measurement in enumerate(measurements(recording, observer.needs, rate)):
+        now = (measurement.stamp_ns - recording.epoch_ns) / 1e9
         try:
             estimate = observer.update(measurement)
         except RecordingError as error:
-            at = (measurement.stamp_ns - recording.epoch_ns) * 1e-9
-            raise RecordingError(f'{recording.name}: at {at:.6f} s: {error}') from error
-        times.append((estimate.stamp_ns - recording.epoch_ns) * 1e-9)
+            raise RecordingError(f'{recording.name}: at {now:.6f} s: {error}') from error
+        stamps.append(estimate.stamp_ns)
         for name, value in estimate.values.items():
             columns.setdefault(name, []).append(value)
         if progress is not None and n % 256 == 0:
-            progress((times[-1] - recording.start) / span)
-    channels = [
-        Channel(name, np.array(times), np.array(values)) for name, values in columns.items()
-    ]
+            progress((now - recording.start) / span)
+    time = to_seconds(np.array(stamps, dtype=np.int64), recording.epoch_ns)
+    channels = [Channel(name, time, np.array(values)) for name, values in columns.items()]
     return recording.with_channels(channels)

@@ -3,12 +3,15 @@
 from dataclasses import replace
 import math
 
+import numpy as np
 import pytest
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Unexplained
 from tendon_ros.diagnose.watch_cause import as_lasting, places_of, Suspect
 from tendon_ros.diagnose.watch_gap import gap_after, GapJudge
+from tendon_ros.diagnose.watch_stream import Streams
+from tendon_ros.estimate.observer import Measurement
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -63,6 +66,17 @@ def test_the_gap_after_a_diagnosis_is_read(tmp_path):
         gap_after(path)
     with pytest.raises(RecordingError, match='cannot be read'):
         gap_after(tmp_path / 'absent.json')
+
+
+def test_a_window_has_the_very_times_of_a_bag():
+    streams = Streams(load_instrument('bench_rig'), 1.0)
+    epoch_ns, stamps = 1_700_000_000 * 10**9, range(0, 10**8, 100_000)
+    for stamp in stamps:
+        values = {'actuator/pulley_M/position': 0.1, 'actuator/pulley_L/position': 0.0}
+        streams.add(Measurement(epoch_ns + stamp, values))
+    window = streams.window(epoch_ns, epoch_ns + 10**9)
+    expected = np.array(stamps) / 1e9
+    assert np.array_equal(window['actuator/pulley_M/position'].time, expected)
 
 
 def test_what_happened_in_the_diagnosis_has_happened():

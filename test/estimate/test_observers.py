@@ -192,6 +192,16 @@ def test_a_torque_that_the_model_cannot_follow_does_no_harm(bench, pressing):
         assert observer.update(m) == untouched.update(m)
 
 
+def test_estimates_are_at_the_very_times_of_what_was_measured(bench, pressing):
+    """To the last bit, as a bag gives them back, at stamps of which 1e-9 makes others."""
+    time = np.arange(1, 400) * 100_000 / 1e9
+    assert (np.arange(1, 400) * 100_000 * 1e-9 != time).any()
+    measured = (pressing[f'actuator/pulley_{name}/position'] for name in bench.driven)
+    fast = Recording('fast', {c.name: Channel(c.name, time, c.at(time)) for c in measured})
+    estimated = estimate_recording(fast, build_observer(bench, 'contact_angle'))
+    assert np.array_equal(estimated['estimate/force'].time, time)
+
+
 def test_a_sample_that_is_refused_offline_is_told_where_it_is(bench, pressing):
     motor = pressing['actuator/pulley_M/position']
     value = motor.value.copy()
