@@ -98,7 +98,7 @@ class Watch:
 
     :param instrument: the network with the effects that are accepted: what they explain is no gap.
     :param settings: how it is watched.
-    :raises RecordingError: where a driven pulley has no encoder.
+    :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
 
     def __init__(self, instrument: Instrument, settings: WatchSettings | None = None) -> None:
@@ -156,7 +156,7 @@ class Watch:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Motor positions without which the model cannot be driven, never measured so far."""
+        """Positions or torques of motors that drive the model, never measured so far."""
         return self._streams.silent_motors
 
     def look(self) -> WatchReport:

@@ -99,7 +99,7 @@ class Streams:
 
     @property
     def silent_motors(self) -> tuple[str, ...]:
-        """The motors' positions that were never measured."""
+        """The channels that drive the model and were never measured."""
         return tuple(name for name in self._motors if not self._kept.get(name))
 
     @property

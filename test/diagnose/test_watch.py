@@ -290,6 +290,15 @@ def test_after_a_hole_in_the_motion_a_window_fills_again(rig, changing):
     assert largest < 6.0
 
 
+def test_a_motor_without_encoder_is_watched_by_its_torque_and_one_without_either_is_not(rig):
+    blind = [s for s in rig.sensors if not (s.kind == 'angle' and s.of == 'M')]
+    by_torque = Watch(replace(rig, sensors=tuple(blind)))
+    assert by_torque.missing == ('actuator/pulley_M/effort', 'actuator/pulley_L/position')
+    deaf = [s for s in blind if s.of != 'M']
+    with pytest.raises(RecordingError, match='motor M has neither encoder nor torque_sensor'):
+        Watch(replace(rig, sensors=tuple(deaf)))
+
+
 def test_what_cannot_be_used_is_refused_and_the_rest_is_kept(rig):
     watch = Watch(rig)
     assert watch.missing == ('actuator/pulley_M/position', 'actuator/pulley_L/position')
