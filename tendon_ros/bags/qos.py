@@ -11,21 +11,22 @@ from rosbags.interfaces import (
     QosTime,
 )
 
+#: messages that a publisher keeps
+DEPTH = 10
 _INFINITE = QosTime(9223372036, 854775807)
 
 
-def offered_qos(depth: int = 10, *, reliable: bool = True, latched: bool = False) -> Qos:
+def offered_qos(*, reliable: bool = True, latched: bool = False) -> Qos:
     """
     Return the profile that a publisher offers.
 
-    :param depth: messages kept.
     :param reliable: False for best effort.
     :param latched: True for transient-local, which serves late subscribers.
     :return: a profile for :meth:`tendon_ros.bags.bag_writer.BagWriter.add_topic`.
     """
     return Qos(
         QosHistory.KEEP_LAST,
-        depth,
+        DEPTH,
         QosReliability.RELIABLE if reliable else QosReliability.BEST_EFFORT,
         QosDurability.TRANSIENT_LOCAL if latched else QosDurability.VOLATILE,
         _INFINITE,

@@ -88,11 +88,6 @@ class Candidate:
         """Whether any parameter is a size."""
         return any(not p.is_shape for p in self.parameters)
 
-    @property
-    def one_sided(self) -> bool:
-        """Whether its sizes can only grow from their neutral values."""
-        return all(p.low >= p.neutral for p in self.parameters if not p.is_shape)
-
     @cached_property
     def coordinates(self) -> Coordinates:
         """The unknowns of a fit of it."""

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+#: how much time may be made up for at once [s]
+MOST = 0.1
+
 
 class Pace:
     """
     Counts the controller periods that are due.
 
-    A loop that wakes late gets the periods that it missed, up to ``most``; what is beyond is given
-    up, simulated time then falls behind by that, and nothing else changes.
+    A loop that wakes late gets the periods that it missed, up to :data:`MOST`; what is beyond is
+    given up, simulated time then falls behind by that, and nothing else changes.
 
     :param period: of the controllers [s].
     :param origin: when the first period begins, by a steady clock [s].
-    :param most: how much time may be made up for at once [s].
     """
 
-    def __init__(self, period: float, origin: float, most: float = 0.1) -> None:
+    def __init__(self, period: float, origin: float) -> None:
         self._period = period
-        self._most = most
         self._origin = origin
         self._done = 0
         #: simulated time given up since the start [s]
@@ -32,7 +33,7 @@ class Pace:
         """
         # A clock read a rounding error early must not cost a whole period.
         ticks = int((now - self._origin) / self._period + 1e-6) + 1 - self._done
-        most = max(int(self._most / self._period), 1)
+        most = max(int(MOST / self._period), 1)
         if ticks > most:
             lost = (ticks - most) * self._period
             self.slipped += lost

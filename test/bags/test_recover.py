@@ -134,7 +134,7 @@ def test_a_whole_bag_is_copied_whole(recording, tmp_path, storage):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_topics_types_qos_and_foreign_definitions_are_kept(tmp_path, storage):
-    qos = offered_qos(3, reliable=False, latched=True)
+    qos = offered_qos(reliable=False, latched=True)
     bag = BagWriter(tmp_path / 'bag', storage=storage)
     bag.add_topic('/state', 'my_msgs/msg/State', qos, definition='float64 value\n')
     bag.write_raw('/state', b'\x00\x01\x00\x00' + b'\x00' * 8, 5)

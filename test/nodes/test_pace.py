@@ -21,7 +21,7 @@ def test_no_period_is_lost_or_added_while_the_loop_keeps_up(gaps):
 
 
 def test_a_long_stall_is_given_up_and_said():
-    pace = Pace(PERIOD, 0.0, most=0.1)
+    pace = Pace(PERIOD, 0.0)
     pace.due(0.0)
     assert pace.due(1.0) == 100
     assert pace.slipped == pytest.approx(0.9)
