@@ -10,7 +10,7 @@ import numpy as np
 from tendon_ros.bags.layout import Layout, marks
 from tendon_ros.bags.messages import typestore
 from tendon_ros.bags.stamps import IntArray, to_stamps
-from tendon_ros.bags.topics import JOINT_FIELDS, TIP_FRAME, TOPIC_TYPES, WRENCH_TOPICS
+from tendon_ros.bags.topics import JOINT_FIELDS, TIP_FRAME, WRENCH, WRENCH_TOPICS
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel, FloatArray
 
@@ -35,6 +35,24 @@ def joint_layout(joints: list[str], fields: list[str]) -> Layout:
     arrays = {field: parts.get(field, np.empty(0)) for field in JOINT_FIELDS}
     message = kind(header=_header(''), name=list(joints), **arrays)
     return Layout(message, 'sensor_msgs/msg/JointState', numbers)
+
+
+def wrench_layout() -> Layout:
+    """
+    Return the layout of a wrench.
+
+    :return: a layout whose numbers are ``force.y`` and ``torque.z``; all else is zero.
+    """
+    types = typestore().types
+    vector = types['geometry_msgs/msg/Vector3']
+    force, torque = numbers = marks(2)
+    message = types[WRENCH](
+        header=_header(TIP_FRAME),
+        wrench=types['geometry_msgs/msg/Wrench'](
+            force=vector(x=0.0, y=force, z=0.0), torque=vector(x=0.0, y=0.0, z=torque)
+        ),
+    )
+    return Layout(message, WRENCH, numbers)
 
 
 def joint_states(channels: Mapping[tuple[str, str], Channel], epoch_ns: int) -> Iterator[Batch]:
@@ -88,19 +106,9 @@ def wrenches(topic: str, channels: Mapping[str, Channel], epoch_ns: int) -> Iter
             f'{" and ".join(WRENCH_TOPICS[topic])} travel in one message and have different '
             'stamps; resample one of them'
         )
-    types = typestore().types
-    vector = types['geometry_msgs/msg/Vector3']
-    numbers = marks(2)
-    message = types[TOPIC_TYPES[topic]](
-        header=_header(TIP_FRAME),
-        wrench=types['geometry_msgs/msg/Wrench'](
-            force=vector(x=0.0, y=numbers[0], z=0.0), torque=vector(x=0.0, y=0.0, z=numbers[1])
-        ),
-    )
     zero = np.zeros(stamps[0].size)
     columns = [channels[f].value if f in channels else zero for f in ('force', 'torque')]
-    layout = Layout(message, TOPIC_TYPES[topic], numbers)
-    yield stamps[0], layout.encode(stamps[0], np.stack(columns, axis=1))
+    yield stamps[0], wrench_layout().encode(stamps[0], np.stack(columns, axis=1))
 
 
 def _header(frame: str) -> Any:

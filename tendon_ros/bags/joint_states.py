@@ -45,6 +45,19 @@ def resolve_names(
     return tuple(names)
 
 
+def width_of(message: Any) -> int | None:
+    """
+    Return how many values each field of a message has that has any.
+
+    :param message: a JointState.
+    :return: the number, 0 where all are empty; None where fields differ, or names from fields.
+    """
+    sizes = {len(getattr(message, name)) for name in JOINT_FIELDS} - {0}
+    if len(sizes) > 1 or (message.name and sizes and len(message.name) not in sizes):
+        return None
+    return max(sizes, default=0)
+
+
 @dataclass
 class _Block:
     """Messages of one layout: the same names, the same fields."""
@@ -77,9 +90,8 @@ class JointStates:
         :param stamp_ns: its header stamp [ns].
         :param number: its place in the topic, from 1.
         """
-        sizes = {len(getattr(message, name)) for name in JOINT_FIELDS} - {0}
-        width = max(sizes, default=0)
-        if len(sizes) > 1 or (message.name and sizes and width != len(message.name)):
+        width = width_of(message)
+        if width is None:
             self._faults.note(UNEQUAL, number, stamp_ns)
             return
         names = resolve_names(message.name, width, self._joints)

@@ -15,7 +15,7 @@ from geometry_msgs.msg import WrenchStamped
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
-from tendon_ros.bags.joint_states import resolve_names
+from tendon_ros.bags.joint_states import resolve_names, width_of
 from tendon_ros.bags.topics import joint_channel, JOINT_FIELDS, WRENCH_TOPICS
 from tendon_ros.base.errors import listed, TendonError
 
@@ -83,9 +83,8 @@ def joint_values(topic: str, message: JointState, joints: Sequence[str]) -> dict
     :raises MessageError: on fields of different lengths or names that make no sense.
     """
     fields = {name: getattr(message, name) for name in JOINT_FIELDS}
-    sizes = {len(values) for values in fields.values()} - {0}
-    width = max(sizes, default=0)
-    if len(sizes) > 1 or (message.name and sizes and len(message.name) != width):
+    width = width_of(message)
+    if width is None:
         raise MessageError(
             f'{topic}: {len(message.name)} names with '
             + ', '.join(f'{len(values)} values of {name}' for name, values in fields.items())

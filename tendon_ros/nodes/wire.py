@@ -12,15 +12,12 @@ import struct
 
 import numpy as np
 
-from tendon_ros.bags.encoding import joint_layout
+from tendon_ros.bags.encoding import joint_layout, wrench_layout
 from tendon_ros.bags.layout import Layout, marks
-from tendon_ros.bags.messages import typestore
 from tendon_ros.bags.topics import (
     joint_channel,
     JOINT_FIELDS,
     place_of,
-    TIP_FRAME,
-    WRENCH,
     WRENCH_TOPICS,
 )
 
@@ -78,7 +75,7 @@ def wires_for(channels: Iterable[str]) -> tuple[Wire, ...]:
         else:
             joints.setdefault(topic, {}).setdefault(joint, set()).add(field)
     found = [wire for topic, fields in joints.items() for wire in _joint_wires(topic, fields)]
-    found += [Wire(topic, _wrench_layout(), WRENCH_TOPICS[topic]) for topic in wrenches]
+    found += [Wire(topic, wrench_layout(), WRENCH_TOPICS[topic]) for topic in wrenches]
     return tuple(found)
 
 
@@ -88,18 +85,3 @@ def _joint_wires(topic: str, fields: Mapping[str, set[str]]) -> Iterator[Wire]:
         order = [field for field in JOINT_FIELDS if field in filled]
         names = tuple(joint_channel(topic, joint, field) for field in order for joint in members)
         yield Wire(topic, joint_layout(members, order), names)
-
-
-def _wrench_layout() -> Layout:
-    """Return the layout of a wrench of which ``force.y`` and ``torque.z`` are filled."""
-    types = typestore().types
-    vector = types['geometry_msgs/msg/Vector3']
-    force, torque = marks(2)
-    stamp = types['builtin_interfaces/msg/Time'](sec=0, nanosec=0)
-    message = types[WRENCH](
-        header=types['std_msgs/msg/Header'](stamp=stamp, frame_id=TIP_FRAME),
-        wrench=types['geometry_msgs/msg/Wrench'](
-            force=vector(x=0.0, y=force, z=0.0), torque=vector(x=0.0, y=0.0, z=torque)
-        ),
-    )
-    return Layout(message, WRENCH, [force, torque])
