@@ -10,7 +10,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.judge import equals, IDLE, signs_beside, Stays, stays
+from tendon_ros.diagnose.judge import equals, IDLE, signs_beside, stays
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
@@ -85,7 +85,11 @@ def test_much_that_stays_without_what_undoes_each_other_speaks_against_a_company
     weighed = belief(ready, found).weighed
     [company] = companies(ready, found, weighed, [0, 1], stays(ready, found.final))
     power = 10.0 * company.weighed.signs.worth
-    much = Stays(dict.fromkeys(ready.problem.channels(), power), power)
+    much = replace(
+        stays(ready, found.final),
+        by_channel=dict.fromkeys(ready.problem.channels(), power),
+        whole=power,
+    )
     assert companies(ready, found, weighed, [0, 1], much) == []
 
 
@@ -106,7 +110,7 @@ def test_dry_frictions_that_are_each_uncertain_are_one(alike):
     assert rubbing(ready, found, sure, able, left) is None
     assert rubbing(ready, found, weighed, [0, 2], left) is None
     # where much stays, friction may stand in for something unknown
-    much = Stays(dict.fromkeys(left.by_channel, 1e4), 1e4)
+    much = replace(left, by_channel=dict.fromkeys(left.by_channel, 1e4), whole=1e4)
     assert rubbing(ready, found, weighed, able, much) is None
 
 

@@ -18,9 +18,12 @@ from tendon_ros.diagnose.judge import (
     stays,
     UNSEEN_NOISE,
 )
+from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.signs import probability, Signs
+from tendon_ros.diagnose.worth import LEAST_IN_ONE
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 FRICTION = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
 
@@ -170,3 +173,32 @@ def test_what_happens_once_beside_what_a_law_gets_wrong_at_other_times_is_luck(
     found = found_with(ready.problem, FRICTION)
     signs = Signs(8.0, left=0.1, form=1.0, event=True, part=part)
     assert (chance(ready, found, 0, signs) > IDLE) is believed
+
+
+@pytest.mark.parametrize(('where_limited', 'believed'), [(True, True), (False, False)])
+def test_what_a_limit_gets_wrong_where_it_acts_says_nothing_of_friction(
+    measured_on, where_limited, believed
+):
+    body = load_instrument('single_body')
+    limit = ('torque_saturation', 'motor_body', {'limit': 0.09, 'knee': 0.05})
+    rubs = ('coulomb_friction', 'pulley_body', {'torque': 0.03})
+    run = measured_on(body, limit, rubs, settings=(('duration', '8 s'), ('amplitude', '30 deg')))
+    ready = prepared([run], body)
+    problem = ready.problem
+    found = found_with(problem, limit, rubs)
+    acts = form_parts(problem, found.start, found.final)[0] > LEAST_IN_ONE
+    assert 0.02 < np.mean(acts) < 0.4
+    # as much as the friction is worth, and with a form
+    worth = (found.without[1].cost - found.final.cost) / len(acts)
+    there = acts if where_limited else ~acts
+    wrong = np.where(there, np.sqrt(worth / np.mean(there)), 0.0)
+    left = stays(ready, found.final)
+    more = left.whole + worth
+    left = replace(
+        left,
+        by_channel=dict.fromkeys(left.by_channel, more),
+        whole=more,
+        samples=left.samples + wrong,
+    )
+    signs = signs_beside(problem, found, found.without[1], left)
+    assert (probability(signs) > NAMED) is believed
