@@ -60,7 +60,9 @@ def causes_of(heard: Prepared, start: Fit, final: Fit, kept: Sequence[Weighed]) 
         cause = weighed.cause
         values = final.model.values(n)
         units = units_at(heard.problem.rollouts.instrument, cause.effect, cause.place)
+        # at another time, or in another recording, it goes by the same name
         names = dict.fromkeys((c.effect, c.place) for c in weighed.equal)
+        names.pop((cause.effect, cause.place), None)
         causes.append(
             Cause(
                 effect=cause.effect,

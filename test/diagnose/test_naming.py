@@ -2,9 +2,12 @@
 
 from types import SimpleNamespace
 
-from tendon_ros.diagnose.naming import judged, strained
+from tendon_ros.diagnose.naming import causes_of, judged, strained, Weighed
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.result import Cause, Shrink
+from tendon_ros.diagnose.signs import Signs
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 LATE = Candidate('sensor_delay', 'torque_body')
 HEAVY = Candidate('inertia', 'pulley_body')
@@ -55,3 +58,17 @@ def test_only_what_was_measured_is_strained():
     moved = [(known, -2.5), (guess, 9.0), (near, 1.5), (wall, 3.0), (known, 2.2)]
     problem = SimpleNamespace(moved=lambda _: moved)
     assert strained(problem, None) == {('inertia', 'pulley_body'): 2.5}
+
+
+def test_a_push_is_not_told_from_others_by_its_own_name(measured_on):
+    push = Candidate('disturbance', 'pulley_body')
+    pushed = {'torque': 0.3, 'start': 2.0, 'duration': 0.5}
+    body = load_instrument('single_body')
+    ready = prepared([measured_on(body, (push.effect, push.place, pushed))], body)
+    start = ready.problem.fitted(ready.problem.empty, rounds=1)
+    final = ready.problem.fitted(ready.problem.empty.joined(push, pushed), rounds=1)
+    again = Candidate('disturbance', 'pulley_body', only='free')
+    signs = Signs(1.0, left=0.0, form=0.0)
+    weighed = Weighed(push, equal=(again, HEAVY), signs=signs, chance=0.9, without=start)
+    [cause] = causes_of(ready, start, final, [weighed])
+    assert [(o.effect, o.place) for o in cause.indistinguishable] == [(HEAVY.effect, HEAVY.place)]
