@@ -37,8 +37,6 @@ LOUD = 2.0
 HALF = 0.5
 #: part of the samples that tells anything of a cause which shows there alone
 ENOUGH = 0.1
-#: and the part where no other law acts from which on that speaks for all
-MOSTLY = 0.5
 #: form of a law from which on another effect of its kind may only give it another form: creep with
 #: one time constant more, hysteresis with one more bend
 COARSE = 0.1
@@ -71,9 +69,6 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         if all(stands_out_in_time(problem, before, after, event) for event in new):
             return True
         part = _part_where_it_happens(problem, before, after, new)
-        quiet = profile < LEAST_IN_ONE
-        if np.mean(quiet) > MOSTLY:  # what a limit's law gets wrong says nothing of all else
-            part = max(part, _part_where_it_happens(problem, before, after, new, quiet))
         return part > TAKES_EVENT or (part > HALF and gain > TIMES_EVENT * form)
     if gain > form:
         return True
@@ -87,11 +82,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
 
 
 def _part_where_it_happens(
-    problem: Problem,
-    before: Fit,
-    after: Fit,
-    new: Set[Candidate],
-    among: BoolArray | None = None,
+    problem: Problem, before: Fit, after: Fit, new: Set[Candidate]
 ) -> float:
     """
     Return the part of what is left that events explain, in the recordings that have them.
@@ -102,8 +93,6 @@ def _part_where_it_happens(
     there = np.zeros(len(before.left), dtype=np.bool_)
     for n, _, span in problem.spans():
         there[span] = any(c.acts_in(segments[n].name) for c in new)
-    if among is not None:
-        there &= among
     then, last = (np.where(there, fit.left, 0.0) for fit in (before, after))
     left, stays = problem.structured(then), problem.structured(last)
     return (left - stays) / max(left, 1e-12)

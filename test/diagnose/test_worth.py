@@ -12,7 +12,6 @@ from tendon_ros.diagnose.worth import (
     beyond_laws,
     gains,
     hopeless,
-    LEAST_IN_ONE,
     moving,
     open_question,
     stands_out,
@@ -256,26 +255,3 @@ def test_an_event_does_not_live_on_what_single_bins_have(rubbing, together, told
     model = start.model.joined(event, push)
     after = replace(start, model=model, left=all_along, cost=float(all_along @ all_along))
     assert worthwhile(rubbing, before, before, after) is told
-
-
-@pytest.mark.parametrize(('where_limited', 'worth_it'), [(True, True), (False, False)])
-def test_what_a_limit_gets_wrong_where_it_acts_says_nothing_of_a_push(
-    body, measured_on, where_limited, worth_it
-):
-    limit = ('torque_saturation', 'motor_body', {'limit': 0.1, 'knee': 0.05})
-    push = ('disturbance', 'pulley_body', {'torque': 0.03, 'start': 2.0, 'duration': 1.0})
-    problem = prepared([measured_on(body, limit, push, settings=WIDE)], body).problem
-    start = problem.fitted(problem.empty)
-    model = problem.empty.joined(Candidate(*limit[:2]), limit[2])
-    before = problem.fitted(model)
-    after = problem.fitted(before.model.joined(Candidate(*push[:2]), push[2]))
-    acts = form_profile(problem, start, before) > LEAST_IN_ONE
-    assert 0.02 < np.mean(acts) < 0.4
-    # more than the push leaves without it, and with a form, whether it is known or not
-    there = acts if where_limited else ~acts
-    wrong = np.where(there, np.sqrt((before.cost - after.cost) / np.sum(there)), 0.0)
-    before, after = (
-        replace(fit, left=fit.left + wrong, cost=float(np.sum((fit.left + wrong) ** 2)))
-        for fit in (before, after)
-    )
-    assert worthwhile(problem, start, before, after) is worth_it
