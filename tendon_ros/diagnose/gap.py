@@ -12,13 +12,14 @@ from tendon_ros.base.recording import unit_of
 from tendon_ros.diagnose.enough import BLOCK
 from tendon_ros.diagnose.intervals import mean_square_interval
 from tendon_ros.diagnose.result import ChannelGap, Shrink
+from tendon_ros.diagnose.signs import BOUNDLESS
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
 
 #: noise deviations by which a model is off that diverges: a number, so that all can read it
-DIVERGED = 1e9
+DIVERGED = math.sqrt(BOUNDLESS)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.bodies import turned
 from tendon_ros.diagnose.form import change
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -26,6 +27,30 @@ FloatArray = NDArray[np.float64]
 HAS = 0.3
 #: times as many waves, up to which the shape of a ripple's wave is told
 HARMONICS = 3
+
+
+def alike(problem: Problem, final: Fit, without: Fit) -> list[float]:
+    """
+    Return how much of what the law of each cause gets wrong may look like causes that have gone.
+
+    :param problem: the data.
+    :param final: with all causes.
+    :param without: without some of them.
+    :return: of each cause of the state 0 to 1; 0 of those that have gone, and of those elsewhere.
+    """
+    causes = final.model.causes
+    gone = set(causes) - set(without.model.causes)
+    # a motor and the pulley that it turns are one place
+    body = turned(problem.rollouts.instrument)
+    places = {body.get(cause.place, cause.place) for cause in gone}
+    own = [change(problem, final, k) for k, cause in enumerate(causes) if cause in gone]
+    does = np.sum(own, axis=0)
+    return [
+        imitable(problem, final, k, does)
+        if cause not in gone and body.get(cause.place, cause.place) in places
+        else 0.0
+        for k, cause in enumerate(causes)
+    ]
 
 
 def imitable(problem: Problem, state: Fit, k: int, does: FloatArray) -> float:

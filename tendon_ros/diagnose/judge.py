@@ -9,22 +9,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bodies import turned
-from tendon_ros.diagnose.form import change, form_parts, form_power, own_power, tie
+from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.further import saved
-from tendon_ros.diagnose.imitable import imitable
+from tendon_ros.diagnose.imitable import alike
 from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import BOUNDLESS, LEFT_NOISE, probability, Signs
 from tendon_ros.diagnose.undoing import its_own
-from tendon_ros.diagnose.worth import (
-    by_channel,
-    gains,
-    LEAST_IN_ONE,
-    TAKES_EVENT,
-    TIMES_EVENT,
-)
+from tendon_ros.diagnose.worth import by_channel, gains, LEAST_IN_ONE, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -123,7 +116,8 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     """
     final = found.final
     parts = form_parts(problem, found.start, final)
-    whole = _signs(problem, found, (without, final), left, parts)
+    similar = alike(problem, final, without)
+    whole = _signs(problem, found, (without, final), left, parts, similar)
     kept = set(without.model.causes)
     others = [part for cause, part in zip(final.model.causes, parts, strict=True) if cause in kept]
     quiet = np.sum([np.zeros(len(final.left)), *others], axis=0) < LEAST_IN_ONE
@@ -135,6 +129,7 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
         (_among(without, quiet), _among(final, quiet)),
         _structure(problem, _only(left.samples, quiet)),
         [_only(np.sqrt(part), quiet) ** 2 for part in parts],
+        similar,
     )
     return max(whole, apart, key=probability)
 
@@ -156,8 +151,14 @@ def _signs(
     fits: tuple[Fit, Fit],
     left: Stays,
     parts: Sequence[FloatArray],
+    similar: Sequence[float],
 ) -> Signs:
-    """Return the signs by fits without and with a cause, ``parts``: what each law may leave."""
+    """
+    Return the signs by fits without and with a cause.
+
+    ``parts``: what the law of each cause may leave, and ``similar``: how much of it looks like
+    what has gone.
+    """
     without, final = fits
     channels = problem.channels()
     then, last = (by_channel(problem, fit.left) for fit in (without, final))
@@ -170,19 +171,8 @@ def _signs(
         return float(sum(power.get(c, 0.0) * gained[c] for c in channels)) / every
 
     wrong = [there(by_channel(problem, np.sqrt(part))) for part in parts]
-    causes = final.model.causes
-    gone = set(causes) - set(without.model.causes)
+    gone = set(final.model.causes) - set(without.model.causes)
     events = [cause for cause in gone if cause.instants]
-    # a motor and the pulley that it turns are one place
-    body = turned(problem.rollouts.instrument)
-    places = {body.get(cause.place, cause.place) for cause in gone}
-    own = [change(problem, found.final, k) for k, cause in enumerate(causes) if cause in gone]
-    does = np.sum(own, axis=0)
-    kept = [
-        power * imitable(problem, found.final, k, does)
-        for k, (cause, power) in enumerate(zip(causes, wrong, strict=True))
-        if cause not in gone and body.get(cause.place, cause.place) in places
-    ]
     form = own_power(problem, found.start) + sum(wrong)
     grown = min(gains(problem, without, final)[0], BOUNDLESS)
     # numbers that have to be off without it speak for it, too, where it shows
@@ -193,7 +183,7 @@ def _signs(
         left=there(left.by_channel) + ELSEWHERE * left.whole,
         form=form,
         event=bool(events),
-        beside=sum(kept),
+        beside=sum(power * part for power, part in zip(wrong, similar, strict=True)),
         part=grown / max(grown + left.whole, 1e-9),
         lone=bool(events)
         and all(stands_out_in_time(problem, without, final, event) for event in events),

@@ -10,16 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
-from tendon_ros.identify.segment import Segment
-
-BoolArray = NDArray[np.bool_]
 
 #: part of a simple effect by which a fit begins to see whether there is more to it
 LITTLE = 0.2
@@ -102,7 +98,7 @@ def plain(problem: Problem, model: Model, k: int) -> tuple[Candidate, dict[str, 
         return None
     speeds = np.concatenate(
         [
-            rows.velocity[~_still(segment, pulley), column]
+            rows.velocity[~segment.rests(pulley), column]
             for rows, segment in zip(states, problem.rollouts.segments, strict=True)
         ]
     )
@@ -125,13 +121,6 @@ def plain(problem: Problem, model: Model, k: int) -> tuple[Candidate, dict[str, 
     [name] = effect.holds
     [size] = [p.name for p in find(name).parameters]
     return Candidate(name, cause.place), {size: float(np.mean(seen))}
-
-
-def _still(segment: Segment, pulley: str) -> BoolArray:
-    """Return where a pulley cannot be told from rest, shape (bins,); nowhere if nobody sees it."""
-    if pulley in segment.prescribed:
-        return segment.still[segment.prescribed.index(pulley)]
-    return np.zeros(len(segment.time), dtype=np.bool_)
 
 
 def as_one(model: Model) -> Model:

@@ -7,7 +7,7 @@ them. Torque is the second choice: the model integrates it, and what it gets wro
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, replace
 
 from tendon_ros.base.errors import listed, RecordingError
@@ -49,6 +49,16 @@ def drives(instrument: Instrument) -> tuple[Drive, ...]:
             )
         found.append(Drive(motor.pulley, motor.name, sensors[0]))
     return tuple(found)
+
+
+def motions_first(driving: Iterable[Drive]) -> list[Drive]:
+    """
+    Return what drives the model in the order of the rows of its signals.
+
+    :param driving: in any order.
+    :return: those by their motion, then those by their torque.
+    """
+    return sorted(driving, key=lambda d: d.by_torque)
 
 
 def motor_channels(instrument: Instrument) -> tuple[str, ...]:

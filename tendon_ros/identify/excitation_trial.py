@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate, Values
-from tendon_ros.identify.driving import Drive
+from tendon_ros.identify.driving import Drive, motions_first
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.excitation_channel import PER_COUNT, row_noise, Sensed
 from tendon_ros.identify.excitation_evidence import Evidence
 from tendon_ros.identify.excitation_motion import CYCLE, Motion
 from tendon_ros.identify.excitation_rig import ACCURACY, performed, touching
-from tendon_ros.identify.segment import ENDING, Segment, SETTLING
+from tendon_ros.identify.segment import driven_by, ENDING, Segment, SETTLING
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.identify.true_motion import true_motion
@@ -30,7 +30,6 @@ from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.limiting import given_by
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.rows import Rows
-from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import along, follow
 
 FloatArray = NDArray[np.float64]
@@ -86,8 +85,7 @@ class Trial:
         effort: Effort,
     ) -> None:
         self._effort = effort
-        # motions come first, as in a recording
-        self._driving = sorted(driving, key=lambda d: d.by_torque)
+        self._driving = motions_first(driving)
         self._base = touching(instrument, motion)
         self._sensed = tuple(sensed)
         self._truth = _again(*truth)
@@ -195,16 +193,13 @@ class Trial:
 
     def _driven(self, known: FloatArray, reported: FloatArray, period: float) -> _Drive:
         bins = known.shape[1]
-        by_torque = [d.by_torque for d in self._driving]
-        # torques alone may jump, and must not ring
-        signals = Signals.through if all(by_torque) else Signals.smooth
         segment = Segment(
             name='experiment',
             period=period,
             time=period * np.arange(bins, dtype=np.float64),
             prescribed=tuple(d.pulley for d in self._driving if not d.by_torque),
             pushed=tuple(d.pulley for d in self._driving if d.by_torque),
-            motion=signals(0.0, period, known),
+            motion=driven_by(self._driving, 0.0, period, known),
             measured=(),
             contacts=tuple(c.name for c in self._base.contacts if c.enabled),
             pose={},

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
-from tendon_ros.identify.driving import drives
+from tendon_ros.identify.driving import Drive, drives, motions_first
 from tendon_ros.identify.loads import loads
 from tendon_ros.identify.means import binned
 from tendon_ros.identify.motion import motion_in_bins, reading_error, thinned
@@ -118,7 +118,18 @@ class Segment:
             if measured.sensor.kind == 'motor_torque':
                 j, pulley = motors[measured.sensor.of]
                 if pulley in self.prescribed:
-                    yield row, j, self.still[self.prescribed.index(pulley)]
+                    yield row, j, self.rests(pulley)
+
+    def rests(self, pulley: str) -> BoolArray:
+        """
+        Return where a pulley cannot be told from rest: nowhere, if its motion is not known.
+
+        :param pulley: its name.
+        :return: shape (bins,).
+        """
+        if pulley in self.prescribed:
+            return self.still[self.prescribed.index(pulley)]
+        return np.zeros(len(self.time), dtype=np.bool_)
 
     def with_noise(self, noise: Sequence[FloatArray], shaped: Sequence[FloatArray]) -> Segment:
         """
@@ -135,6 +146,20 @@ class Segment:
         return replace(self, measured=tuple(changed))
 
 
+def driven_by(driving: Sequence[Drive], start: float, period: float, rows: FloatArray) -> Signals:
+    """
+    Return the signals that drive a model.
+
+    :param driving: what drives it.
+    :param start: of the first value [s].
+    :param period: between values [s].
+    :param rows: what was recorded of each, shape (drives, bins).
+    :return: the signals; torques alone may jump, and must not ring.
+    """
+    shape = Signals.through if all(d.by_torque for d in driving) else Signals.smooth
+    return shape(start, period, rows)
+
+
 def segment_of(instrument: Instrument, recording: Recording, period: float) -> Segment:
     """
     Return a recording as a segment; contacts and noise are settled by the caller.
@@ -145,7 +170,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
     :return: the segment, with every contact of the instrument and the sensors' noise alone.
     :raises RecordingError: where a motor has neither an encoder nor a torque sensor.
     """
-    driving = sorted(drives(instrument), key=lambda d: d.by_torque)
+    driving = motions_first(drives(instrument))
     known = [d.sensor.channel for d in driving]
     start = max(float(recording[name].time[0]) for name in known)
     end = min(float(recording[name].time[-1]) for name in known)
@@ -165,8 +190,6 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         else motion_in_bins(recording[d.sensor.channel], d.sensor, start, period, bins)
         for d in driving
     ]
-    # torques alone may jump, and must not ring
-    driven = Signals.through if all(d.by_torque for d in driving) else Signals.smooth
     measured = []
     for sensor in instrument.sensors:
         if sensor.channel in known or sensor.channel not in recording:
@@ -178,7 +201,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         period=period,
         time=time,
         prescribed=tuple(d.pulley for d in driving if not d.by_torque),
-        motion=driven(0.5 * period, period, np.array(rows)),
+        motion=driven_by(driving, 0.5 * period, period, np.array(rows)),
         measured=tuple(measured),
         contacts=tuple(c.name for c in instrument.contacts if c.enabled),
         pose={},
