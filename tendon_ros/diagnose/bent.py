@@ -163,7 +163,7 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
 def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
-    Return whether a factor is nearly at its bound, or an amplitude without a unit at it.
+    Return whether a factor is nearly at its bound, or an angle or amplitude at it.
 
     :param candidate: an effect.
     :param values: of its parameters.
@@ -175,8 +175,9 @@ def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
 def _is_at_bound(parameter: Parameter, value: float) -> bool:
     if parameter.neutral == 1.0:
         return parameter.low > 0.0 and not parameter.low * SPENT < value < parameter.high / SPENT
-    plain = parameter.unit == '1' and parameter.search != 'switch'
-    return plain and abs(value) > WIDE * parameter.high
+    # torques and forces end beyond any machine, and what is later than a delay's bound is late, too
+    ends = parameter.unit in ('1', 'rad') and parameter.search != 'switch'
+    return ends and abs(value) > WIDE * parameter.high
 
 
 def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:

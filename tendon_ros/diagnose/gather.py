@@ -24,7 +24,6 @@ from tendon_ros.identify.fit import Fit, Problem
 
 SHOWN = 30  # rivals
 WORSE = 1.2  # times as far off as by the file, and as noise, that a channel is worse
-LOUD = 3.0  # times the noise that is accounted for, beyond which what is heard is something else
 
 
 def traces(ready: Prepared, final: Model) -> tuple[Trace, ...]:
@@ -151,49 +150,6 @@ def moved(problem: Problem, final: Fit, others: Sequence[Fit]) -> tuple[Moved, .
         )
         if not still
     )
-
-
-def absurd_words(moved: Sequence[Moved]) -> list[str]:
-    """
-    Say which guesses turned out so far off that the reason is rather another unit.
-
-    :param moved: the numbers of the file as they were fitted.
-    :return: a sentence for each.
-    """
-    return [
-        f'{one.place}: its {one.quantity.replace("_", " ")} fits best as {one.value:.3g} times '
-        'what the file guesses; where that cannot be, a recorded channel has another unit than '
-        'its import says'
-        for one in moved
-        if one.absurd
-    ]
-
-
-def loud_words(ready: Prepared) -> list[str]:
-    """
-    Say which channels scatter far more than their sensors and the encoders' counts account for.
-
-    :param ready: the problem, with its noise.
-    :return: a sentence for each of whose sensor the file tells the noise.
-    """
-    powers: dict[str, list[tuple[float, float]]] = {}
-    for segment, counts in zip(ready.whole.rollouts.segments, ready.noise.counts, strict=True):
-        for m, counted in zip(segment.measured, counts, strict=True):
-            told = m.floor**2 + float(np.mean(counted**2))
-            if m.floor > 0.0:
-                own = powers.setdefault(m.sensor.channel, [])
-                own.append((float(np.mean(m.noise**2)), told))
-    found = []
-    for channel, parts in powers.items():
-        heard, told = np.mean(parts, axis=0)
-        times = math.sqrt(heard / told)
-        if times > LOUD:
-            found.append(
-                f'{channel} scatters {times:.0f} times as much as its sensor and the counts of '
-                'the encoders account for: what shakes or knocks faster than the model is '
-                'compared (a play, a fast ripple, a loop near its limit) is taken for noise here'
-            )
-    return found
 
 
 def pushed_words(ready: Prepared) -> list[str]:

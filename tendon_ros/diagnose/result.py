@@ -112,7 +112,8 @@ class Diagnosis(_Frozen):
     The whole answer.
 
     ``beside``: effects that ``instrument.yaml`` has beside the named causes, since they hold on
-    what no fit has seen; each may stand in for something else.
+    what no fit has seen; each may stand in for something else. ``doubts``: why to mistrust the
+    verdict itself, such as a unit that cannot be; ``left_out``: all else that is to be said.
     """
 
     schema_: Literal[1] = Field(default=1, alias='schema')
@@ -125,4 +126,5 @@ class Diagnosis(_Frozen):
     candidates: tuple[Judged, ...]
     unexplained: Unexplained
     next_experiment: tuple[NextExperiment, ...] = ()
+    doubts: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()

@@ -19,6 +19,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
+from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, weak_words
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
@@ -148,6 +149,7 @@ def diagnose(
         names = sorted(measured)
         rig = with_encoders(instrument, given)
         ahead = next_experiments(rig, names, problem, found, held, jobs, patience, report)
+    traces = gather.traces(heard, final.model)
     moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))
     diagnosis = Diagnosis(
         verdict=verdict,
@@ -168,9 +170,15 @@ def diagnose(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime
         ),
         next_experiment=ahead,
-        left_out=(
-            *intake.left_out,
+        doubts=(
             *strong_words(runs, instrument),
+            *weak_words(traces),
+            *absurd_words(moved),
+            *(loud_words(heard) if verdict == 'no_gap' else []),
+        ),
+        left_out=(
+            *(coarse_words(heard) if verdict == 'no_gap' else loud_words(heard)),
+            *intake.left_out,
             *said_of_torque(instrument),
             *held_on,
             *([early_words(held.early)] if held.early else []),
@@ -179,16 +187,14 @@ def diagnose(
             *([ASTRAY] if astray else []),
             *loops.left_out,
             *gather.pushed_words(heard),
-            *gather.loud_words(heard),
             *gather.worse_words(channels),
-            *gather.absurd_words(moved),
             *patience.words(found.unmet),
         ),
     )
     evidence = Evidence(
         instrument=instrument.name,
         recordings=tuple(r.name for r in runs),
-        traces=gather.traces(heard, final.model),
+        traces=traces,
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),
         floors=gather.floors(heard.problem),

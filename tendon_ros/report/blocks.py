@@ -132,3 +132,4 @@ class Banner:
     text: str
     tone: Tone
     tiles: Sequence[Tile] = ()
+    doubts: Sequence[str] = ()

@@ -80,7 +80,7 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
     )
     rows = []
     for gap in gaps:
-        factor, unit = scale(gap.unit, gap.after)
+        factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
         after, interval = with_interval(factor * gap.after, _scaled(gap.ci95, factor), '1')
         rows.append(
             (

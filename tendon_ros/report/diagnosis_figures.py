@@ -212,7 +212,7 @@ def _joining(step: Step) -> str:
 
 
 def _channel_bar(gap: ChannelGap, full: float) -> Bar:
-    factor, unit = scale(gap.unit, gap.after)
+    factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
     before, after, floor = (
         number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor)
     )

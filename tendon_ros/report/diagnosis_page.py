@@ -88,11 +88,17 @@ def diagnosis_page(diagnosis: Diagnosis, evidence: Evidence) -> str:
             LABELS[diagnosis.verdict],
             headline(diagnosis),
             UNIT,
-            _TONES[diagnosis.verdict],
+            _tone(diagnosis),
             _tiles(diagnosis),
+            [f'But {doubt}.' for doubt in diagnosis.doubts],
         ),
     )
     return html(page)
+
+
+def _tone(diagnosis: Diagnosis) -> Tone:
+    tone = _TONES[diagnosis.verdict]
+    return 'fair' if diagnosis.doubts and tone == 'good' else tone
 
 
 def _data(diagnosis: Diagnosis, evidence: Evidence) -> str:

@@ -47,6 +47,7 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     :return: plain text, lines of at most 96 characters, ending in a newline.
     """
     lines = wrap(headline(diagnosis), _WIDTH)
+    lines += _part('but', list(diagnosis.doubts))
     if diagnosis.verdict != 'no_gap':
         lines += _part('where', _where(diagnosis), len(by_place(diagnosis.where)) - _PLACES)
     which = [line for cause in diagnosis.causes[:_CAUSES] for line in _cause(diagnosis, cause)]
@@ -121,7 +122,7 @@ def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
         ('channel', 'before', 'after', 'floor', '', 'before/floor', 'after/floor')
     ]
     for gap in gaps:
-        factor, unit = scale(gap.unit, gap.after)
+        factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
         rmse = (number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor))
         rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
     widths = [max(len(row[k]) for row in rows) for k in range(7)]

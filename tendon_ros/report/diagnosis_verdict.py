@@ -274,10 +274,10 @@ def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:
     shrink = cause.shrink
     if not shrink.channel:
         return '', ''
-    factor, unit = scale(shrink.unit, shrink.after)
+    floor = floor_of(diagnosis, shrink.channel)
+    factor, unit = scale(shrink.unit, max(shrink.after, floor))
     values = [number(factor * x, 3) for x in (shrink.without_this, shrink.after)]
     text = f'{values[0]} {unit} RMSE without it, {values[1]} with it'
-    floor = floor_of(diagnosis, shrink.channel)
     if floor > 0.0:
         text += f' (noise floor {number(factor * floor, 3)})'
     return channel_words(shrink.channel), text

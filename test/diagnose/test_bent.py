@@ -86,6 +86,13 @@ def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
         ('tension_friction', 'pulley_2', {'coefficient': 1.0}, True),
         ('sensor_rectified', 'load_cell', {'rectified': 1.0}, False),
         ('coulomb_friction', 'pulley_2', {'torque': 1e5}, False),
+        # half a radian of play, an encoder half a turn off, a wall a radian away are others, too
+        ('backlash', 'motor_M', {'angle': 0.5, 'held': 0.5}, True),
+        ('backlash', 'motor_M', {'angle': 0.4, 'held': 0.5}, False),
+        ('encoder_offset', 'encoder_M', {'angle': -3.14}, True),
+        ('contact_position', 'grasper', {'angle': 0.99}, True),
+        # what is later than that is late
+        ('sensor_delay', 'load_cell', {'time': 0.05}, False),
         ('torque_gain', 'motor_M', {'gain': 0.021}, True),
         ('torque_gain', 'motor_M', {'gain': 1.2}, False),
     ],

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose.evidence import Moved
-from tendon_ros.diagnose.gather import absurd_words
 from tendon_ros.diagnose.intake.counts import as_counted, step_of
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.model.instrument_file import load_instrument
@@ -77,20 +75,3 @@ def test_a_torque_far_beyond_its_limit_is_said(body, measured_on, quick):
     assert len(found) == 1
     assert f'{name} reaches' in found[0]
     assert 'times what motor body' in found[0]
-
-
-@pytest.mark.parametrize(
-    ('value', 'ci95', 'guessed', 'said'),
-    [
-        (0.04, (0.02, 0.14), True, True),
-        (30.0, (20.0, 45.0), True, True),
-        (0.04, (0.02, 0.14), False, False),
-        (2.5, (2.0, 3.0), True, False),
-        # what is hardly known may be anything
-        (0.04, (0.001, 1.4), True, False),
-    ],
-)
-def test_a_guess_that_is_far_off_makes_one_doubt_a_unit(value, ci95, guessed, said):
-    one = Moved('pulley_body', 'inertia', value, ci95, '1', guessed)
-    assert one.absurd == said
-    assert len(absurd_words([one])) == said

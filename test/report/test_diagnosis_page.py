@@ -71,6 +71,16 @@ def test_verdict_comes_before_everything_else(page):
     assert order == sorted(order)
 
 
+def test_a_doubt_stands_with_the_verdict_and_takes_its_green(case):
+    diagnosis, evidence = case('one_cause')
+    sure = diagnosis_page(diagnosis, evidence)
+    doubt = 'a torque reaches 28 times what its motor can'
+    made = diagnosis_page(diagnosis.model_copy(update={'doubts': (doubt,)}), evidence)
+    assert 'class="banner good"' in sure
+    assert 'class="banner fair"' in made
+    assert made.index('class="headline"') < made.index(f'But {doubt}.') < made.index('<main>')
+
+
 def test_page_fetches_nothing(page, any_name):
     made = page(any_name)
     assert not re.search(r'https?:|<link|@import|url\(|<script', made)

@@ -136,6 +136,14 @@ def test_summary_tells_what_is_left_and_what_is_next(case):
     assert 'something not named' not in summary(case('no_gap')[0])
 
 
+def test_a_doubt_comes_right_after_the_verdict(case):
+    diagnosis, _ = case('one_cause')
+    doubt = 'a torque reaches 28 times what its motor can'
+    lines = summary(diagnosis.model_copy(update={'doubts': (doubt,)})).splitlines()
+    at = lines.index(f'but     {doubt}')
+    assert lines[at + 1].startswith('where')
+
+
 def test_the_rest_and_its_probability_do_not_contradict_one_another(case):
     diagnosis, _ = case('three_causes')
     assert diagnosis.beside == ()

@@ -1,0 +1,84 @@
+"""What makes a verdict itself doubtful."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, weak_words
+from tendon_ros.diagnose.evidence import Moved, Trace
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.model.instrument_file import load_instrument
+
+EFFORT = 'actuator/pulley_body/effort'
+
+
+@pytest.mark.parametrize(('more', 'told'), [(0.0, True), (0.05, True), (0.05, False)])
+def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured_on, more, told):
+    body = load_instrument('single_body')
+    run = measured_on(body)
+    effort = run[EFFORT]
+    shaken = effort.value + more * np.random.default_rng(1).standard_normal(effort.value.size)
+    run = run.with_channels([replace(effort, value=shaken)])
+    if not told:
+        sensors = [replace(s, noise=0.0, resolution=0.0) for s in body.sensors]
+        body = replace(body, sensors=tuple(sensors))
+    words = loud_words(prepared([run], body))
+    assert [w.split()[0] for w in words] == ([EFFORT] if more and told else [])
+    # the sensor's own noise is 5 mN m, and counts make some more
+    assert all(4 <= int(w.split()[2]) <= 10 for w in words)
+
+
+@pytest.mark.parametrize('times', [1.0, 30.0])
+def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(measured_on, times):
+    body = load_instrument('single_body')
+    # a loop that damps hardly shakes by counts
+    motor = replace(body.motors[0], controller=replace(body.motors[0].controller, kd=0.005))
+    sensors = [
+        replace(s, noise=s.noise / times, resolution=s.resolution / times)
+        if s.channel == EFFORT
+        else s
+        for s in body.sensors
+    ]
+    body = replace(body, motors=(motor,), sensors=tuple(sensors))
+    ready = prepared([measured_on(body)], body)
+    words = coarse_words(ready)
+    assert bool(words) is (times > 1.0)
+    assert all('finer encoder' in said and ' N m and no better' in said for said in words)
+    # counts account for it: nothing shakes
+    assert not loud_words(ready)
+
+
+@pytest.mark.parametrize(('times', 'said'), [(100.0, True), (3.0, False)])
+def test_far_less_torque_than_the_motion_takes_makes_one_doubt_a_column(times, said):
+    torque = np.sin(np.linspace(0.0, 20.0, 500))
+    trace = Trace(
+        recording='run',
+        channel=EFFORT,
+        unit='N m',
+        time=np.linspace(0.0, 5.0, 500),
+        measured=torque / times,
+        before=torque,
+        after=torque,
+        held_out=np.zeros(500, dtype=bool),
+    )
+    words = weak_words([trace, replace(trace, channel='load_cell/force', unit='N')])
+    assert bool(words) is said
+    assert all('100 times' in one and EFFORT in one for one in words)
+
+
+@pytest.mark.parametrize(
+    ('value', 'ci95', 'guessed', 'said'),
+    [
+        (0.04, (0.02, 0.14), True, True),
+        (30.0, (20.0, 45.0), True, True),
+        (0.04, (0.02, 0.14), False, False),
+        (2.5, (2.0, 3.0), True, False),
+        # what is hardly known may be anything
+        (0.04, (0.001, 1.4), True, False),
+    ],
+)
+def test_a_guess_that_is_far_off_makes_one_doubt_a_unit(value, ci95, guessed, said):
+    one = Moved('pulley_body', 'inertia', value, ci95, '1', guessed)
+    assert one.absurd == said
+    assert len(absurd_words([one])) == said
