@@ -62,10 +62,8 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         seen, friction that never yields, a limit without an end where the torque is known, a
         number of the file within its tolerance.
     """
-    for t in problem.tolerances:
-        if t.is_moved_by(candidate):
-            value = values[t.parameter]
-            return t.axis.low < value < t.axis.high
+    if _is_tolerated(problem, candidate, values):
+        return True
     # a controller holds its torque for a period, on average half of one too long
     held = HOLDS * problem.rollouts.instrument.control_period
     if candidate.effect == 'sensor_delay' and values['time'] < held:
@@ -94,6 +92,15 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
         if travel is not None and values['angle'] > YIELDS * travel:
             return True
     return (simpler(candidate, values) or biased(problem, candidate, values)) is not None
+
+
+def _is_tolerated(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """Return whether numbers of the file, all that an effect moves, are within tolerances."""
+    own = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(candidate)}
+    return bool(own) and all(
+        p.name in own and own[p.name].low < values[p.name] < own[p.name].high
+        for p in candidate.parameters
+    )
 
 
 def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -175,7 +182,7 @@ def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
 def _is_at_bound(parameter: Parameter, value: float) -> bool:
     if parameter.neutral == 1.0:
         return parameter.low > 0.0 and not parameter.low * SPENT < value < parameter.high / SPENT
-    # torques and forces end beyond any machine, and what is later than a delay's bound is late, too
+    # torques and forces end beyond any machine, and what is later than a delay's bound is late
     ends = parameter.unit in ('1', 'rad') and parameter.search != 'switch'
     return ends and abs(value) > WIDE * parameter.high
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
@@ -35,25 +37,23 @@ class Beside:
         self._alone = self._solved(self._products, self._pull, self._bounds)[0]
 
     def best(
-        self, changes: FloatArray, reach: FloatArray, still: int | None
+        self, changes: FloatArray, reach: FloatArray, still: Sequence[int]
     ) -> tuple[float, FloatArray]:
         """
         Return what changes explain.
 
         :param changes: what each size changes by one, shape (samples, sizes).
         :param reach: how far each size may go, shape (2, sizes).
-        :param still: an unknown that the change takes the place of: it does not move beside it,
-            and nothing holds it back any more; None where there is none.
+        :param still: unknowns that the change takes the place of: they do not move beside it, and
+            nothing holds them back any more.
         :return: by how much squares fall, and the sizes, shape (sizes,).
         """
         across = self._slope.T @ changes
         products = np.block([[self._products, across], [across.T, changes.T @ changes]])
         pull = np.concatenate([self._pull, changes.T @ self._left])
         bounds = np.concatenate([self._bounds, reach], axis=1)
-        freed = 0.0
-        if still is not None:
-            bounds[:, still] = 0.0
-            freed = float(self._held[still])
+        bounds[:, list(still)] = 0.0
+        freed = float(self._held[list(still)].sum())
         fall, found = self._solved(products, pull, bounds)
         return max(0.0, fall - self._alone + freed), found[len(self._pull) :]
 

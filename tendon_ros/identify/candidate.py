@@ -135,8 +135,7 @@ def everyone(
     :param withheld: effects that are not to be considered, ``EFFECT`` or ``EFFECT@PLACE``.
     :param magnitude: how large the instrument's forces are.
     :return: the candidates, in the catalogue's order; an effect that the file has at a place may
-        be another one there, unless the file says how well it is known: then it moves with all
-        other numbers, and is no cause.
+        be another one there; of what the file says how well it is known, only beyond that.
     """
     own = {(use.effect, use.place): use.parameters for use in instrument.effects}
     silent = {s.name for s in instrument.sensors if s.channel not in measured}
@@ -153,8 +152,6 @@ def everyone(
             one = Candidate(effect.id, place, magnitude=magnitude)
             given = own.get((effect.id, place))
             if given is not None and not one.instants:
-                if any(f'{place}.{effect.id}.{name}' in instrument.tolerances for name in given):
-                    continue
                 one = replace(one, given=tuple(sorted(given.items())))
             found.append(one)
     return tuple(found)

@@ -34,7 +34,7 @@ class Proposal:
     """
     A candidate with places on its axes from which a fit may begin.
 
-    ``sizes``: which of its axes are sizes; ``base``: the place on them where the state already
+    ``sizes``: which of its axes are sizes; ``base``: the places on them where the state already
     is; ``gain``: by how much the squares fall, to first order; ``seen``: norm of the signature of
     typical size, in noise deviations, and ``own``: the part of it that nothing else imitates.
     ``firm``: it is what was tried: half of the way to a preload that leaves a cable slack nothing
@@ -44,7 +44,7 @@ class Proposal:
     candidate: Candidate
     z: tuple[float, ...]
     sizes: tuple[int, ...]
-    base: float = 0.0
+    base: tuple[float, ...]
     gain: float = 0.0
     seen: float = 0.0
     own: float = 0.0
@@ -58,7 +58,7 @@ class Proposal:
     @property
     def steps(self) -> list[float]:
         """How far the proposal goes on each axis that is a size."""
-        return [self.z[n] - self.base for n in self.sizes]
+        return [self.z[n] - begun for n, begun in zip(self.sizes, self.base, strict=True)]
 
     def resized(self, steps: Sequence[float]) -> tuple[float, ...]:
         """
@@ -68,9 +68,9 @@ class Proposal:
         :return: places within the bounds of the axes.
         """
         z = list(self.z)
-        for n, step in zip(self.sizes, steps, strict=True):
+        for n, begun, step in zip(self.sizes, self.base, steps, strict=True):
             low, high = self.candidate.coordinates.axes[n].ends
-            z[n] = float(min(max(self.base + step, low), high))
+            z[n] = float(min(max(begun + step, low), high))
         return tuple(z)
 
 
@@ -134,11 +134,8 @@ class Screen:
         :param candidate: the candidate.
         :return: whether; a first look does not see what it costs to hold numbers within.
         """
-        j = self._own(candidate)
-        if j is None:
-            return False
-        moved = self.fit.model.moved[j - self.fit.slope.shape[1]]
-        return bool(abs(moved) > SUSPECT)
+        n = self.fit.slope.shape[1]
+        return any(abs(self.fit.model.moved[j - n]) > SUSPECT for j in self._own(candidate))
 
     def corrected(self, proposal: Proposal) -> Proposal:
         """
@@ -211,18 +208,23 @@ class Screen:
         """Return by how much the squares fall where sizes have gone so far."""
         return float(self.left @ self.left - np.sum((self.left + own @ steps) ** 2))
 
-    def _own(self, candidate: Candidate) -> int | None:
-        """Return which unknown of the fit is the very number that a candidate moves."""
-        return next((j for t, j in self._numbers if t.is_moved_by(candidate)), None)
+    def _own(self, candidate: Candidate) -> list[int]:
+        """Return which unknowns of the fit are the very numbers that a candidate moves."""
+        return [j for t, j in self._numbers if t.is_moved_by(candidate)]
 
-    def _base(self, candidate: Candidate) -> float:
-        """Return where a number of the file has moved to already, as its effect says it."""
-        j = self._own(candidate)
-        if j is None:
-            return 0.0
-        n = j - self.fit.slope.shape[1]
-        [axis] = candidate.coordinates.axes
-        return axis.place(self.problem.tolerances[n].axis.value(float(self.fit.model.moved[n])))
+    def _base(self, candidate: Candidate) -> tuple[float, ...]:
+        """Return where numbers of the file have moved to already, as their effect says it."""
+        coordinates = candidate.coordinates
+        own = {
+            t.parameter: t.axis.value(float(z))
+            for t, z in zip(self.problem.tolerances, self.fit.model.moved, strict=True)
+            if t.is_moved_by(candidate)
+        }
+        if not own:
+            return (0.0,) * len(coordinates.sizes)
+        known = {p.name: p.typical if p.is_shape else p.neutral for p in candidate.parameters}
+        places = coordinates.place({**known, **own})
+        return tuple(places[n] for n in coordinates.sizes)
 
     def _changes(self, proposal: Proposal, at: Sequence[float]) -> FloatArray | None:
         """Return what each size changes by one, taken at a size; shape (samples, sizes or 1)."""
@@ -246,9 +248,9 @@ class Screen:
         """Return the part of changes that tolerances and causes do not imitate."""
         inverse = self._inverse
         # beyond its tolerance, a number is the cause itself
-        j = self._own(candidate)
-        if j is not None and self._free[j]:
-            inverse = inverse - np.outer(inverse[:, j], inverse[:, j]) / inverse[j, j]
+        j = [j for j in self._own(candidate) if self._free[j]]
+        if j:
+            inverse = inverse - inverse[:, j] @ np.linalg.solve(inverse[np.ix_(j, j)], inverse[j])
         own: FloatArray = changes - self._slope @ (inverse @ (self._slope.T @ changes))
         return own
 
@@ -256,7 +258,7 @@ class Screen:
         """Return how far each size may go down and up, shape (2, sizes)."""
         axes = proposal.candidate.coordinates.axes
         ends = np.array([axes[n].ends for n in proposal.sizes]).reshape(-1, 2).T
-        reach: FloatArray = np.clip(ends - proposal.base, -FARTHEST, FARTHEST)
+        reach: FloatArray = np.clip(ends - np.asarray(proposal.base), -FARTHEST, FARTHEST)
         return reach
 
     def _best(self, proposal: Proposal, own: FloatArray) -> FloatArray:

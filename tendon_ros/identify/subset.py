@@ -134,8 +134,9 @@ class Subsets:
 
 def _least(proposal: Proposal) -> list[float]:
     """Return the smallest sizes that a member may have."""
-    ends = [axis.ends[0] - proposal.base for axis in proposal.candidate.coordinates.axes]
+    axes = proposal.candidate.coordinates.axes
+    ends = [axes[n].ends[0] - base for n, base in zip(proposal.sizes, proposal.base, strict=True)]
     return [
-        SMALLEST * step if ends[n] > -1e-9 else ends[n]
-        for n, step in zip(proposal.sizes, proposal.steps, strict=True)
+        SMALLEST * step if end > -1e-9 else end
+        for end, step in zip(ends, proposal.steps, strict=True)
     ]

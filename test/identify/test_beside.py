@@ -18,7 +18,7 @@ def state(bench, measured_on):
 
 def test_a_change_that_is_what_is_left_explains_all_of_it(state):
     problem, fit = state
-    gain, sizes = Beside(problem, fit).best(fit.left[:, None], np.array([[-30.0], [30.0]]), None)
+    gain, sizes = Beside(problem, fit).best(fit.left[:, None], np.array([[-30.0], [30.0]]), [])
     assert gain > 0.9 * float(fit.left @ fit.left)
     # tolerances that were pressed go back by themselves
     assert sizes[0] < -0.5
@@ -27,7 +27,7 @@ def test_a_change_that_is_what_is_left_explains_all_of_it(state):
 def test_a_bound_is_kept(state):
     problem, fit = state
     bounds = np.array([[-0.25], [30.0]])
-    _, sizes = Beside(problem, fit).best(fit.left[:, None], bounds, None)
+    _, sizes = Beside(problem, fit).best(fit.left[:, None], bounds, [])
     assert sizes[0] == pytest.approx(-0.25)
 
 
@@ -35,5 +35,5 @@ def test_what_tolerances_do_as_well_explains_nothing_more(state):
     problem, fit = state
     free = np.flatnonzero(problem.free(fit) & (np.abs(fit.slope).sum(axis=0) > 0.0))
     column = fit.slope[:, [free[-1]]]
-    gain, _ = Beside(problem, fit).best(column, np.array([[-30.0], [30.0]]), None)
+    gain, _ = Beside(problem, fit).best(column, np.array([[-30.0], [30.0]]), [])
     assert gain < 0.05 * fit.cost

@@ -11,7 +11,7 @@ SAMPLES = 2000
 
 
 def proposal(effect, place, sizes=(0,), z=(1.0,)):
-    return Proposal(Candidate(effect, place), z, sizes)
+    return Proposal(Candidate(effect, place), z, sizes, (0.0,) * len(sizes))
 
 
 @pytest.fixture

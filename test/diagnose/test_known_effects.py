@@ -1,0 +1,62 @@
+"""Effects of the file that it says how well it knows: causes only beyond that."""
+
+from dataclasses import replace
+
+import pytest
+
+from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.session import diagnose
+from tendon_ros.identify.candidate import everyone
+from tendon_ros.model.instrument_file import load_instrument
+
+SETTINGS = (('duration', '10 s'), ('amplitude', '40 deg'))
+
+
+@pytest.fixture
+def arm():
+    """Return an arm whose weight is known to 5 % and 1 deg, and its torque in N m."""
+    body = load_instrument('pendulum_arm')
+    known = {name: spread for name, spread in body.tolerances.items() if 'torque_gain' not in name}
+    return replace(body, tolerances={**known, 'pulley_arm.inertia': 0.05})
+
+
+def weighing(arm, torque, phase=0.0):
+    """Return the arm with another weight."""
+    [weight] = arm.effects
+    weight = replace(weight, parameters={'torque': torque, 'phase': phase})
+    return replace(arm, effects=(weight,))
+
+
+@pytest.fixture
+def weight(arm):
+    """Return the candidate that the weight is another one."""
+    measured = [s.channel for s in arm.sensors]
+    [found] = [c for c in everyone(arm, measured) if c.effect == 'gravity']
+    return found
+
+
+@pytest.mark.parametrize(
+    ('torque', 'phase', 'tolerated'),
+    [(0.44, 0.02, True), (0.5, 0.02, False), (0.44, 0.1, False)],
+)
+def test_an_effect_of_the_file_is_none_within_its_tolerances(
+    arm, weight, measured_on, torque, phase, tolerated
+):
+    problem = prepared([measured_on(arm, settings=SETTINGS)], arm).problem
+    assert degenerate(problem, weight, {'torque': torque, 'phase': phase}) is tolerated
+
+
+@pytest.mark.parametrize(
+    ('torque', 'phase', 'named'), [(0.6, 0.0, True), (0.4, 0.2, True), (0.41, 0.005, False)]
+)
+def test_a_weight_beyond_its_tolerance_is_a_cause_or_cannot_be_told_from_one(
+    arm, measured_on, torque, phase, named
+):
+    run = measured_on(weighing(arm, torque, phase), settings=SETTINGS)
+    told = diagnose([run], arm, jobs=1, plan=False).diagnosis
+    found = {
+        (c.effect, c.place) for cause in told.causes for c in (cause, *cause.indistinguishable)
+    }
+    assert (('gravity', 'pulley_arm') in found) is named
+    assert told.verdict == ('explained' if named else 'no_gap')
