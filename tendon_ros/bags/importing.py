@@ -14,7 +14,7 @@ from tendon_ros.bags.mapping import Mapping, Time
 from tendon_ros.bags.stamps import END, IntArray, to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
-from tendon_ros.base.quantity import factor
+from tendon_ros.base.quantity import factor, parsed
 from tendon_ros.base.recording import Channel, FloatArray, Recording, unit_of
 
 BoolArray = NDArray[np.bool_]
@@ -71,6 +71,8 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         if source.bits is not None:
             raw = np.where(raw >= 2.0 ** (source.bits - 1), raw - 2.0**source.bits, raw)
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
+        if source.wrap is not None:
+            value = _unwrapped(value, parsed(source.wrap, unit_of(name)))
         value = value + source.offset
         if source.time is None:
             rows, (time, usable) = every, common
@@ -86,8 +88,8 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
             continue
         if lost.any():
             warnings.append(
-                f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out (not '
-                f'a finite number), first row {1 + int(rows[lost][0])} of the data'
+                f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out '
+                f'(empty, or not a finite number), first row {1 + int(rows[lost][0])} of the data'
             )
         channels[name] = Channel(name, time[keep], value[keep])
     if not any(name.startswith('actuator/') for name in channels):
@@ -99,6 +101,14 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         metadata=_metadata(path, table, mapping),
         warnings=tuple(warnings),
     )
+
+
+def _unwrapped(value: FloatArray, period: float) -> FloatArray:
+    """Return readings that do not begin anew after a period, shape (n,); what lacks stays so."""
+    known = np.isfinite(value)
+    found = value.copy()
+    found[known] = np.unwrap(value[known], period=period)
+    return found
 
 
 def _time(path: Path, table: Table, time: Time) -> FloatArray:

@@ -15,6 +15,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
         sign: -1                 # turns the direction
         offset: 0.5              # added last, in the channel's SI unit
         bits: 16                 # where a signed register was logged without its sign
+        wrap: 360 deg            # where the reading begins anew after so much
         time: {column: 9, unit: us}  # where the channel has stamps of its own
     metadata: {tool: Maryland}
     attribution: Who made the data, where it was published.
@@ -23,8 +24,8 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
 ``value = sign · scale · unit · raw + offset``. ``runs`` is for files that hold one table a run;
 without it the file is one run, and a column is one array of the file. An empty cell is a sample
 that was not taken; with stamps of its own, a row that repeats the channel's last one is none. With
-``bits``, raw numbers from the upper half of the register's range are negative ones. A JSON file
-holds a list of samples, each an object of numbers, or a list of numbers for each column.
+``bits``, raw numbers from the upper half of the register's range are negative ones. With ``wrap``,
+a change by more than half of it from one sample to the next is taken for a turn. A JSON file holds a list of samples, each an object of numbers, or a list of numbers for each column.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     field_validator,
@@ -45,12 +47,17 @@ import yaml
 
 from tendon_ros.bags.topics import place_of
 from tendon_ros.base.errors import listed, RecordingError, TendonError
-from tendon_ros.base.quantity import factor
+from tendon_ros.base.quantity import factor, parsed
 from tendon_ros.base.recording import unit_of
 from tendon_ros.base.resources import installed, installed_names
 from tendon_ros.base.yaml_keys import UniqueKeys
 
 Column = Annotated[int, Field(ge=0, strict=True)] | Annotated[str, Field(min_length=1)]
+
+#: a number with its unit; one without a unit is told so, not that it is no text
+Quantity = Annotated[
+    str, BeforeValidator(lambda given: str(given) if isinstance(given, int | float) else given)
+]
 
 #: years of an epoch: time that counts from one of them fits into 64 bits of nanoseconds
 EARLIEST, LATEST = 1700, 2037
@@ -97,7 +104,7 @@ class Time(_Strict):
 
     column: Column | None = None
     unit: str = 's'
-    rate: str | None = None
+    rate: Quantity | None = None
 
     @field_validator('unit')
     @classmethod
@@ -128,6 +135,7 @@ class Source(_Strict):
     sign: Literal[1, -1] = 1
     offset: float = 0.0
     bits: Annotated[int, Field(ge=2, le=64, strict=True)] | None = None
+    wrap: Quantity | None = None
     time: Time | None = None
 
     @field_validator('scale')
@@ -164,6 +172,8 @@ class Mapping(_Strict):
             try:
                 place_of(name)
                 _checked(source.unit, unit_of(name))
+                if source.wrap is not None and parsed(source.wrap, unit_of(name)) <= 0.0:
+                    raise ValueError(f'wrap: {source.wrap!r} must be more than 0')
             except (RecordingError, ValueError) as error:
                 raise ValueError(f'{name}: {error}') from error
         if not any(name.startswith('actuator/') for name in value):

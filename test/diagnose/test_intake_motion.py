@@ -108,6 +108,14 @@ def test_a_clock_that_jumped_back_leaves_a_leap(bench, sound):
     assert 'the clock jumped back' in intake.left_out[0]
 
 
+def test_a_reading_that_begins_anew_each_turn_is_told_from_a_clock(bench, sound):
+    def wrapped(time, value):
+        return time, np.mod(value - np.median(value), 2.0 * np.pi)
+
+    intake = admitted([sound[0], every_channel(sound[1], wrapped)], bench)
+    assert 'begins anew each turn: import it with wrap: 360 deg' in ' '.join(intake.left_out)
+
+
 @pytest.mark.parametrize('rate', [50.0, 500.0])
 def test_jitter_lost_samples_and_channels_of_their_own_clock_pass(bench, sound, rate):
     rng = np.random.default_rng(5)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+import math
 
 import numpy as np
 
@@ -15,6 +16,7 @@ SHORT_GAP = 0.03  # [s] that interpolation bridges whatever the sampling
 LONG_GAP = 0.5  # [s] beyond which the motion is unknown
 LEAP = 20.0  # times the steps around it: no motor moves like that between two samples
 AROUND = 5  # samples
+TURN = 2.0 * math.pi  # [rad]
 
 
 @dataclass(frozen=True)
@@ -78,11 +80,17 @@ def _leaps(channel: Channel) -> Iterator[Break]:
     for n in np.flatnonzero(leap > np.maximum(STILL, LEAP * beside)).tolist():
         if time[n + 1] - time[n] > GAP * usual or not AROUND <= n < leap.size - AROUND:
             continue
-        left, right = leap[n - AROUND : n], leap[n + 1 : n + 1 + AROUND]
+        left, right = leap[n - AROUND : n].max(), leap[n + 1 : n + 1 + AROUND].max()
+        pace = max(left, right)
         # in motion on both sides: between rests, a small servo may well go like that
-        if min(left.max(), right.max()) > 0.0 and leap[n] > LEAP * max(left.max(), right.max()):
+        if min(left, right) > 0.0 and leap[n] > LEAP * pace:
+            cause = (
+                'the reading begins anew each turn: import it with wrap: 360 deg in its mapping'
+                if abs(leap[n] - TURN) <= 2.0 * pace
+                else 'the clock jumped back and samples were lost, or the encoder miscounted'
+            )
             words = (
                 f'{channel.name} leaps by {leap[n]:.3g} rad between two samples at {time[n]:.3f} '
-                's: the clock jumped back and samples were lost, or the encoder miscounted'
+                f's: {cause}'
             )
             yield Break(float(time[n]), float(time[n + 1]), True, words)
