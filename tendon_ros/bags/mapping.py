@@ -25,7 +25,8 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
 without it the file is one run, and a column is one array of the file. An empty cell is a sample
 that was not taken; with stamps of its own, a row that repeats the channel's last one is none. With
 ``bits``, raw numbers from the upper half of the register's range are negative ones. With ``wrap``,
-a change by more than half of it from one sample to the next is taken for a turn. A JSON file holds a list of samples, each an object of numbers, or a list of numbers for each column.
+a change by more than half of it from one sample to the next is taken for a turn. A JSON file holds
+a list of samples, each an object of numbers, or a list of numbers for each column.
 """
 
 from __future__ import annotations

@@ -126,17 +126,26 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     Return the causes of which not even whether they are there can be told by their sizes.
 
     Where a torque constant is guessed, friction may be as small as that may be large: it is there
-    all the same, whatever its unit.
+    all the same, whatever its unit. What the file states with a tolerance has its own unit.
 
     :param problem: the data.
     :param fit: the fit.
-    :return: those of which every size may as well be none.
+    :return: those of which every size may as well be none, or every number as the file has it.
     """
     found = set()
     units = [t.guessed and t.quantity == 'torque_gain' for t in problem.tolerances]
     own = fit.slope.shape[1] - len(units)
     rows = parameter_intervals(problem, fit, np.array([False] * own + units))
+    whole = parameter_intervals(problem, fit)
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
+        stated = {
+            t.parameter: t.axis for t in problem.tolerances if t.given and t.is_moved_by(cause)
+        }
+        if stated:
+            ends = {name: whole[k][name] for name in stated}
+            if all(ends[n][0] < a.high and ends[n][1] > a.low for n, a in stated.items()):
+                found.add(k)
+            continue
         sizes = [
             p for p in cause.parameters if not (p.is_shape or p.search in ('share', 'switch'))
         ]

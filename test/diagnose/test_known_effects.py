@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import everyone
@@ -60,3 +61,16 @@ def test_a_weight_beyond_its_tolerance_is_a_cause_or_cannot_be_told_from_one(
     }
     assert (('gravity', 'pulley_arm') in found) is named
     assert told.verdict == ('explained' if named else 'no_gap')
+
+
+@pytest.mark.parametrize(('torque', 'phase', 'sized'), [(0.6, 0.0, True), (0.42, 0.0, False)])
+def test_a_weight_that_may_be_within_its_tolerance_has_no_size(
+    arm, weight, measured_on, torque, phase, sized
+):
+    """By its interval, which is wider where torque constant and inertia are hardly known."""
+    run = measured_on(weighing(arm, torque, phase), settings=SETTINGS)
+    for rig, told in ((arm, sized), (load_instrument('pendulum_arm'), False)):
+        problem = prepared([run], rig).problem
+        values = {'torque': torque, 'phase': phase}
+        fit = problem.fitted(problem.empty.joined(weight, values), rounds=6)
+        assert (0 not in unsized(problem, fit)) is told
