@@ -181,8 +181,8 @@ def worse_words(channels: Sequence[ChannelGap]) -> list[str]:
     """
     return [
         f'{gap.channel} is foretold worse than by the file ({gap.before:.3g} → {gap.after:.3g} '
-        f'{gap.unit}, noise {gap.noise_floor:.3g}): what was fitted to other channels does not '
-        'hold there, so mistrust the numbers that moved'
+        f'{gap.unit}, noise {gap.noise_floor:.3g}): what was fitted elsewhere does not hold '
+        'there, so mistrust the numbers that moved'
         for gap in channels
         if gap.after > WORSE * max(gap.before, gap.noise_floor)
     ]

@@ -105,8 +105,9 @@ def _pictures(
     for trace in shown:
         light, dark = trace_figure(trace, floors.get(trace.channel))
         before, after = rmse(trace)
-        factor, unit = scale(trace.unit, after)
-        caption = f'RMSE {number(factor * before, 3)} → {number(factor * after, 3)}\u00a0{unit}'
+        factor, unit = scale(trace.unit, max(after, floors.get(trace.channel, 0.0)))
+        rmses = f'{number(factor * before, 3)} → {number(factor * after, 3)}\u00a0{unit}'
+        caption = f'{trace.recording}: RMSE {rmses}'
         alt = f'{trace_words(trace)}: measured, predicted before and after, and what remains'
         pictures.append(Picture(light, alt, caption, dark))
     blocks: list[Block] = [Prose(text), Columns(tuple(pictures))]

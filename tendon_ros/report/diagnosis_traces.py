@@ -66,7 +66,7 @@ def trace_figure(theme: Theme, trace: Trace, floor: float | None) -> Figure:
     for axes in (whole, closer):
         _lines(axes, theme, time, trace, factor)
         axes.set_ylabel(f'[{unit}]')
-    whole.set_title(trace_words(trace))
+    whole.set_title(_channel(trace))
     whole.tick_params(labelbottom=False)
     handles, labels = whole.get_legend_handles_labels()
     figure.legend(
@@ -110,8 +110,12 @@ def trace_figure(theme: Theme, trace: Trace, floor: float | None) -> Figure:
 
 def trace_words(trace: Trace) -> str:
     """Return what a trace is: its channel and its recording."""
+    return f'{_channel(trace)}, recording {trace.recording}'
+
+
+def _channel(trace: Trace) -> str:
     words = channel_words(trace.channel)
-    return f'{words[:1].upper()}{words[1:]}, recording {trace.recording}'
+    return f'{words[:1].upper()}{words[1:]}'
 
 
 def _lines(axes: Axes, theme: Theme, time: FloatArray, trace: Trace, factor: float) -> None:

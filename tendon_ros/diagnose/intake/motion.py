@@ -48,10 +48,8 @@ def _fault(recording: Recording, instrument: Instrument) -> str:
     sensors = {s.channel: s for s in instrument.sensors}
     if not any(turned(recording[name], sensors.get(name)) for name in names):
         widest, unit = max((travel(recording[n].value), recording[n].unit) for n in names)
-        return (
-            f'without motion: {", ".join(names)} stay within {widest:.2g} {unit}; move the motors '
-            'while recording'
-        )
+        still = f'stay within {widest:.2g} {unit}' if widest > 0.0 else 'never change'
+        return f'without motion: {", ".join(names)} {still}; move the motors while recording'
     return ''
 
 
