@@ -73,7 +73,7 @@ def diagnosis_page(diagnosis: Diagnosis, evidence: Evidence) -> str:
     :return: the HTML of a self-contained file.
     """
     sections = [_which(diagnosis), _how_far(diagnosis, evidence)]
-    if diagnosis.where:
+    if _placed(diagnosis):
         sections.insert(0, _where(diagnosis))
     if diagnosis.verdict != 'no_gap':
         sections.append(_rest(diagnosis))
@@ -112,8 +112,8 @@ def _data(diagnosis: Diagnosis, evidence: Evidence) -> str:
 
 def _tiles(diagnosis: Diagnosis) -> tuple[Tile, ...]:
     before, after = (number(x) for x in overall(diagnosis))
-    where = ('nowhere', 'no place stands out')
-    if diagnosis.where and diagnosis.verdict != 'no_gap':
+    where = ('nowhere', 'no cause to be placed')
+    if _placed(diagnosis):
         where = where_words(diagnosis.where)
     if diagnosis.causes:
         first, *others = diagnosis.causes
@@ -139,14 +139,17 @@ def _tiles(diagnosis: Diagnosis) -> tuple[Tile, ...]:
 
 
 def _anchor(diagnosis: Diagnosis) -> str:
-    return 'where' if diagnosis.where else 'how-far'
+    return 'where' if _placed(diagnosis) else 'how-far'
+
+
+def _placed(diagnosis: Diagnosis) -> bool:
+    """Return whether the page says where the gap lies: shares of noise would mislead."""
+    return bool(diagnosis.where) and diagnosis.verdict != 'no_gap'
 
 
 def _where(diagnosis: Diagnosis) -> Section:
     place, share = where_words(diagnosis.where)
     blocks: list[Block] = [Prose(f'{place[:1].upper()}{place[1:]} has most: {share}.')]
-    if diagnosis.verdict == 'no_gap':
-        blocks = [Prose('Of the little that there is, which is noise for the most part:')]
     figure = where_map(diagnosis.where)
     blocks.append(figure)
     if OTHER in (*figure.rows, *figure.columns):

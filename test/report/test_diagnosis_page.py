@@ -100,7 +100,13 @@ def test_every_link_leads_somewhere(page, any_name):
 def test_no_gap_names_no_cause_and_sends_nobody_looking(page):
     text = text_of(page('no_gap'))
     assert 'None is named as a cause.' in text
-    for heading in ('What is left', 'Next experiment', 'Closed loop', 'What each is worth'):
+    for heading in (
+        'Where it lies',
+        'What is left',
+        'Next experiment',
+        'Closed loop',
+        'What each is worth',
+    ):
         assert heading not in text
 
 
