@@ -237,7 +237,7 @@ class Challenge:
             return without
 
         def wins(rival: Candidate, fit: Fit) -> bool:
-            more = len(rival.parameters) - len(cause.parameters)
+            more = rival.price - cause.price
             ahead = (state.cost - fit.cost) / len(state.left)
             # a law that holds another is never worse: it pays for its parameters, or that other
             # one is named, and it among those that cannot be told from it

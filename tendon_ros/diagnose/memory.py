@@ -111,7 +111,9 @@ class Memory:
 
 def _row(model: Model) -> dict[str, Any]:
     return {
-        'causes': [[c.effect, c.place, c.only, c.given, c.magnitude] for c in model.causes],
+        'causes': [
+            [c.effect, c.place, c.only, c.given, c.magnitude, c.stated] for c in model.causes
+        ],
         'z': [list(row) for row in model.z],
         'bristle': [[*key, z] for key, z in model.bristle.items()],
         'moved': model.moved.tolist(),
@@ -128,7 +130,12 @@ def _model(row: dict[str, Any]) -> Model:
 
 
 def _candidate(
-    effect: str, place: str, only: str, given: Sequence[Sequence[Any]], magnitude: Sequence[float]
+    effect: str,
+    place: str,
+    only: str,
+    given: Sequence[Sequence[Any]],
+    magnitude: Sequence[float],
+    stated: bool,
 ) -> Candidate:
     known = tuple((str(n), float(v)) for n, v in given)
-    return Candidate(effect, place, only, known, Magnitude(*map(float, magnitude)))
+    return Candidate(effect, place, only, known, Magnitude(*map(float, magnitude)), stated)

@@ -23,7 +23,7 @@ def criterion(problem: Problem, fit: Fit) -> float:
     :return: its criterion; only differences of states on the same data mean anything.
     """
     seconds = 1.0 + float(problem.clusters(CLUSTER).max(initial=0))
-    parameters = sum(map(len, fit.model.z))
+    parameters = sum(cause.price for cause in fit.model.causes)
     return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
 
 

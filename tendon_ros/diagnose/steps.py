@@ -45,7 +45,7 @@ def judged_cost(rival: Rival) -> float:
     :param rival: the fit.
     :return: squares in noise deviations.
     """
-    return rival.fit.cost * (1.0 + PARAMETER * len(rival.candidate.parameters))
+    return rival.fit.cost * (1.0 + PARAMETER * rival.candidate.price)
 
 
 def best_of[T: (Proposal, Rival)](tried: Sequence[T]) -> list[T]:

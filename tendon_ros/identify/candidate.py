@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+import math
 
 from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.parameter import Parameter
@@ -26,7 +27,7 @@ class Candidate:
     What happens at a time (a slip, a push) happens in one recording, or in each at its own.
     ``given``: what the instrument file says of this effect at this place. The candidate then
     stands instead of it: that the file is wrong about the effect. ``magnitude``: how large the
-    forces of the instrument are.
+    forces of the instrument are. ``stated``: the file says how well it knows what it gives.
     """
 
     effect: str
@@ -34,6 +35,7 @@ class Candidate:
     only: str = ''
     given: tuple[tuple[str, float], ...] = ()
     magnitude: Magnitude = TYPICAL
+    stated: bool = False
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -44,6 +46,11 @@ class Candidate:
         if all(known.get(p.name, p.neutral) == p.neutral for p in own if not p.is_shape):
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
+
+    @property
+    def price(self) -> int:
+        """How many parameters it costs: of equals, what contradicts a measurement comes last."""
+        return len(self.parameters) + self.stated
 
     def as_much(
         self, other: Candidate, values: Mapping[str, float], *, back: bool = False
@@ -152,7 +159,9 @@ def everyone(
             one = Candidate(effect.id, place, magnitude=magnitude)
             given = own.get((effect.id, place))
             if given is not None and not one.instants:
-                one = replace(one, given=tuple(sorted(given.items())))
+                names = [f'{place}.{effect.id}.{name}' for name in given]
+                stated = any(math.isfinite(instrument.tolerances.get(n, math.inf)) for n in names)
+                one = replace(one, given=tuple(sorted(given.items())), stated=stated)
             found.append(one)
     return tuple(found)
 

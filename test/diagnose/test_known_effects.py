@@ -74,3 +74,15 @@ def test_a_weight_that_may_be_within_its_tolerance_has_no_size(
         values = {'torque': torque, 'phase': phase}
         fit = problem.fitted(problem.empty.joined(weight, values), rounds=6)
         assert (0 not in unsized(problem, fit)) is told
+
+
+def test_of_equals_what_contradicts_a_measurement_comes_last(arm, weight):
+    """A weight that was weighed costs one parameter more; one of which nothing is said does not."""
+    assert weight.price == len(weight.parameters) + 1
+    silent = replace(arm, tolerances={})
+    [other] = [
+        c
+        for c in everyone(silent, [s.channel for s in arm.sensors])
+        if c == replace(weight, stated=False)
+    ]
+    assert other.price == len(other.parameters)
