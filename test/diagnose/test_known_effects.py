@@ -77,7 +77,7 @@ def test_a_weight_that_may_be_within_its_tolerance_has_no_size(
 
 
 def test_of_equals_what_contradicts_a_measurement_comes_last(arm, weight):
-    """A weight that was weighed costs one parameter more; one of which nothing is said does not."""
+    """A weight that was weighed costs one parameter more than one of which nothing is said."""
     assert weight.price == len(weight.parameters) + 1
     silent = replace(arm, tolerances={})
     [other] = [
