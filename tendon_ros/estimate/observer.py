@@ -47,7 +47,7 @@ class Observer(ABC):
     Turns measurements into estimates, in the order of their stamps.
 
     Subclasses name the channels that they need, and never see a measurement that lacks one, is not
-    finite, is where no motor can be, or does not come after the one before: :meth:`update` refuses
+    finite, is what no motor can do, or does not come after the one before: :meth:`update` refuses
     those first. What they see is what was there, by all that the instrument's file says of its
     sensors and motors. Where they raise they leave what they carry as it was.
 

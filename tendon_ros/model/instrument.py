@@ -97,6 +97,8 @@ class Controller:
 
 #: times a position limit: further off, a unit or a reading is wrong and not the rig another
 FAR = 5.0
+#: the same of the largest torque
+HUGE = 20.0
 
 
 @dataclass(frozen=True)
@@ -133,6 +135,15 @@ class Motor:
         """
         low, high = self.position_limit
         return abs(angle) > FAR * max(abs(low), abs(high))
+
+    def cannot_give(self, torque: float) -> bool:
+        """
+        Return whether a torque is so far beyond the largest that no motor like this gives it.
+
+        :param torque: at the pulley [N m].
+        :return: whether; never where the largest is open.
+        """
+        return abs(torque) > HUGE * self.largest
 
 
 #: unit of a contact's damping, by its law

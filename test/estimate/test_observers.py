@@ -131,9 +131,13 @@ def test_bad_measurements_are_refused_and_do_no_harm(method, bench, pressing):
 
 
 def unbounded(rig):
-    """Return a rig whose file says nothing of where its motors can be."""
+    """Return a rig whose file says nothing of where its motors can be and what they give."""
     open_end = (-math.inf, math.inf)
-    return replace(rig, motors=tuple(replace(m, position_limit=open_end) for m in rig.motors))
+    motors = [
+        replace(m, position_limit=open_end, torque_limit=math.inf, controller=None)
+        for m in rig.motors
+    ]
+    return replace(rig, motors=tuple(motors))
 
 
 def with_one(measurement, channel, value):
@@ -146,6 +150,15 @@ def test_an_angle_where_no_motor_can_be_is_refused_and_does_no_harm(method, benc
     for m in list(measurements(pressing, observer.needs))[:20]:
         with pytest.raises(RecordingError, match=r'100 rad is far beyond .* motor L in bench_rig'):
             observer.update(with_one(m, 'actuator/pulley_L/position', 100.0))
+        assert observer.update(m) == untouched.update(m)
+
+
+@pytest.mark.parametrize('method', ['static_balance', 'dynamic'])
+def test_a_torque_that_no_motor_gives_is_refused_and_does_no_harm(method, bench, pressing):
+    observer, untouched = build_observer(bench, method), build_observer(bench, method)
+    for m in list(measurements(pressing, observer.needs))[:20]:
+        with pytest.raises(RecordingError, match=r'1e\+06 N m is far beyond .* motor M of bench'):
+            observer.update(with_one(m, 'actuator/pulley_M/effort', 1e6))
         assert observer.update(m) == untouched.update(m)
 
 
@@ -181,7 +194,7 @@ def test_an_observer_that_began_wildly_begins_anew(method, bench, pressing):
 def test_a_torque_that_the_model_cannot_follow_does_no_harm(bench, pressing):
     """What friction remembers is as it was before the model diverged."""
     use = EffectUse('presliding_friction', 'pulley_3', {'torque': 0.05, 'angle': 0.1})
-    rubbing = replace(bench, effects=(use,))
+    rubbing = replace(unbounded(bench), effects=(use,))
     observer, untouched = build_observer(rubbing, 'dynamic'), build_observer(rubbing, 'dynamic')
     some = list(measurements(pressing, observer.needs))[:60]
     for m in some[:30]:

@@ -19,8 +19,6 @@ from tendon_ros.model.instrument import Instrument, Motor
 
 #: overshoot and an encoder's offset that are forgiven [share of the limits' width]
 FORGIVEN = 0.15
-#: times a limit of torque: further off, a unit is more likely than another rig
-HUGE = 20.0
 
 
 def within_limits(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
@@ -44,18 +42,19 @@ def strong_words(recordings: Sequence[Recording], instrument: Instrument) -> tup
     :param instrument: with the limits of its motors and controllers.
     :return: a sentence for each motor.
     """
-    limits = {m.name: m.largest for m in instrument.motors}
+    motors = {m.name: m for m in instrument.motors}
     found = []
     for sensor in instrument.sensors:
         if sensor.kind != 'motor_torque':
             continue
         spans = [_span(r, sensor.channel) for r in recordings if sensor.channel in r]
         largest = max((float(np.abs(span).max()) for span in spans), default=0.0)
-        limit = limits[sensor.of]
-        if largest > HUGE * limit:
+        motor = motors[sensor.of]
+        if motor.cannot_give(largest):
+            limit = motor.largest
             found.append(
                 f'{sensor.channel} reaches {largest:.4g} N m, {largest / limit:.0f} times what '
-                f'motor {sensor.of} of {instrument.name} can ({limit:.4g} N m); correct its unit '
+                f'motor {motor.name} of {instrument.name} can ({limit:.4g} N m); correct its unit '
                 'on import, or the limit'
             )
     return tuple(found)
