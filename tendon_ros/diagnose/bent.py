@@ -20,6 +20,7 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.untold import guesses_torque
+from tendon_ros.identify.waves import shows, travel
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.laws import modified
 
@@ -28,11 +29,6 @@ HOLDS = 0.75
 #: of the time between samples within which a delay is the logger's, which reads one register after
 #: the other
 POLLED = 0.5
-#: waves of a ripple that a motor has to pass
-SEEN = 0.5
-#: and how many where a turn has fewer than this, as hardly any motor (three slots and two poles
-#: have six): what comes once is any torque that follows the angle
-AGAIN, FEW = 2.0, 6.0
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring
 YIELDS = 0.25
@@ -83,13 +79,11 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
                 return True
         if p.search == 'duration' and values[p.name] > LASTS * longest:
             return True
-        if p.search == 'cycles':
-            least = AGAIN if values[p.name] < FEW else SEEN
-            if values[p.name] * _turned(problem, candidate.place) < least:
-                return True
+        if p.search == 'cycles' and not shows(problem, candidate.place, values[p.name]):
+            return True
     if candidate.effect == 'presliding_friction':
-        travel = _travel(problem, candidate.place.removeprefix('pulley_'))
-        if travel is not None and values['angle'] > YIELDS * travel:
+        far = travel(problem, candidate.place.removeprefix('pulley_'))
+        if far is not None and values['angle'] > YIELDS * far:
             return True
     return (simpler(candidate, values) or biased(problem, candidate, values)) is not None
 
@@ -248,24 +242,6 @@ def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
     :return: those.
     """
     return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
-
-
-def _turned(problem: Problem, place: str) -> float:
-    """Return how far a motor turned in any recording, in turns; one where nothing tells."""
-    motors = problem.rollouts.instrument.motors
-    [pulley] = [m.pulley for m in motors if f'motor_{m.name}' == place]
-    travel = _travel(problem, pulley)
-    return 1.0 if travel is None else travel / (2.0 * np.pi)
-
-
-def _travel(problem: Problem, pulley: str) -> float | None:
-    """Return how far a driven pulley turned in any recording [rad]; None where nothing tells."""
-    travels = [
-        float(np.ptp(segment.motion.value[segment.prescribed.index(pulley)]))
-        for segment in problem.rollouts.segments
-        if pulley in segment.prescribed
-    ]
-    return max(travels, default=None)
 
 
 def at_once(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
+from tendon_ros.identify.waves import shows
 from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
@@ -132,6 +134,8 @@ class Starting:
             return [values]
         most = min(WAVES / fineness(instrument), cycles.high)
         grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, most, 2.0)])
+        # slower waves that fit better are no ripple, and would stand before one that is
+        grid = grid[[shows(self._problem, candidate.place, one) for one in grid.tolist()]]
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
         groups, changed = (self._problem.groups(left) for left in (self._fit.left, change))
@@ -147,7 +151,8 @@ class Starting:
             wave -= wave.mean(1, keepdims=True)
             part = left[::2] - left[::2].mean()
             power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)
-        peaks = [k for k in range(1, len(grid) - 1) if power[k - 1] <= power[k] >= power[k + 1]]
+        around = np.concatenate([[-math.inf], power, [-math.inf]])
+        peaks = [k for k in range(len(grid)) if around[k] <= power[k] >= around[k + 2]]
         peaks.sort(key=lambda k: -power[k])
         shapes = starts(candidate)
         return [one | {cycles.name: float(grid[k])} for k in peaks[:3] for one in shapes]
