@@ -23,6 +23,8 @@ YEAR = 365.25 * 86400.0  # [s]
 LONGEST = 250.0 * YEAR  # since its epoch: what whole nanoseconds can say
 #: stamps that stray further from an even spacing are worth a warning [share of the spacing]
 JITTER = 0.5
+#: part of all that it reads by which a reading begins anew
+LEAP = 0.9
 
 
 def run_keys(path: Path | str, mapping: Mapping) -> list[str]:
@@ -71,8 +73,6 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         if source.bits is not None:
             raw = np.where(raw >= 2.0 ** (source.bits - 1), raw - 2.0**source.bits, raw)
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
-        if source.wrap is not None:
-            value = _unwrapped(value, parsed(source.wrap, unit_of(name)))
         value = value + source.offset
         if source.time is None:
             rows, (time, usable) = every, common
@@ -91,7 +91,13 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
                 f'{place}: {np.count_nonzero(lost)} of {time.size} values of {name} left out '
                 f'(empty, or not a finite number), first row {1 + int(rows[lost][0])} of the data'
             )
-        channels[name] = Channel(name, time[keep], value[keep])
+        value = value[keep]
+        if source.wrap is not None:
+            # only now: a turn that a row which is left out had made would stay for ever
+            period = abs(source.scale) * parsed(source.wrap, unit_of(name))
+            warnings += _unturned(f'{place}: {name}', value, period)
+            value = np.unwrap(value, period=period)
+        channels[name] = Channel(name, time[keep], value)
     if not any(name.startswith('actuator/') for name in channels):
         raise RecordingError(f'{place}: no usable sample of the motors; check time and columns')
     return Recording(
@@ -103,12 +109,15 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     )
 
 
-def _unwrapped(value: FloatArray, period: float) -> FloatArray:
-    """Return readings that do not begin anew after a period, shape (n,); what lacks stays so."""
-    known = np.isfinite(value)
-    found = value.copy()
-    found[known] = np.unwrap(value[known], period=period)
-    return found
+def _unturned(place: str, value: FloatArray, period: float) -> list[str]:
+    """Say that readings leap through all of their range, but not by so much as they wrap at."""
+    step = float(np.abs(np.diff(value)).max(initial=0.0))
+    if step > 0.5 * period or step < LEAP * float(np.ptp(value)):
+        return []
+    return [
+        f'{place} leaps by {step:.4g}, and wraps at {period:.4g}: give its wrap in the unit of '
+        'the channel, which is 18 deg for a turn of a rotor behind a gear of 20'
+    ]
 
 
 def _time(path: Path, table: Table, time: Time) -> FloatArray:

@@ -15,7 +15,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
         sign: -1                 # turns the direction
         offset: 0.5              # added last, in the channel's SI unit
         bits: 16                 # where a signed register was logged without its sign
-        wrap: 360 deg            # where the reading begins anew after so much
+        wrap: 360 deg            # where the channel begins anew after so much, before scale
         time: {column: 9, unit: us}  # where the channel has stamps of its own
     metadata: {tool: Maryland}
     attribution: Who made the data, where it was published.
@@ -173,10 +173,13 @@ class Mapping(_Strict):
             try:
                 place_of(name)
                 _checked(source.unit, unit_of(name))
-                if source.wrap is not None and parsed(source.wrap, unit_of(name)) <= 0.0:
-                    raise ValueError(f'wrap: {source.wrap!r} must be more than 0')
             except (RecordingError, ValueError) as error:
                 raise ValueError(f'{name}: {error}') from error
+            try:
+                if source.wrap is not None and parsed(source.wrap, unit_of(name)) <= 0.0:
+                    raise ValueError(f'{source.wrap!r} must be more than 0')
+            except ValueError as error:
+                raise ValueError(f'{name}.wrap: {error}') from error
         if not any(name.startswith('actuator/') for name in value):
             raise ValueError(f'none of {listed(value)} is of the motors; map actuator/JOINT/FIELD')
         return value

@@ -108,7 +108,7 @@ def read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
                 except OverflowError:
                     faults.setdefault(name, f'sample {i}, {name}: too large a number')
             elif cell is not None:
-                faults.setdefault(name, f'sample {i}, {name}: {cell!r} is not a number')
+                faults.setdefault(name, f'sample {i}, {name}: {str(cell)[:40]!r} is not a number')
     return columns, faults
 
 

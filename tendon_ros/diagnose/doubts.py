@@ -9,14 +9,19 @@ import math
 import numpy as np
 
 from tendon_ros.base.recording import unit_of
-from tendon_ros.diagnose.evidence import Moved, Trace
+from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.identify.explanation import Model
 
 #: times the noise that is accounted for, beyond which what is heard is something else; and times
 #: the noise of a sensor from which on one wants to hear what hides what it would show
 LOUD = 3.0
 #: times that a motor's torque is weaker than it can be
 WEAK = 20.0
+#: effects by which torques or motions are another number of times as large; and the guesses that
+#: do the same: others may well be off by fifty times
+SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
+UNITS = frozenset({'torque_gain', 'inertia'})
 
 
 def absurd_words(moved: Sequence[Moved]) -> list[str]:
@@ -35,30 +40,36 @@ def absurd_words(moved: Sequence[Moved]) -> list[str]:
     ]
 
 
-def weak_words(traces: Sequence[Trace]) -> list[str]:
+def weak_words(ready: Prepared, final: Model) -> list[str]:
     """
-    Say which motors report far less than the motion takes by the file, which no effect does.
+    Say which motors report far less than the motion takes, with all that was found.
 
-    A torque may be many times what a file without friction foretells, and a load cell may feel
-    nothing where the file has a wall: neither is said.
+    Without the causes, that is, by which torques or motions are another number of times as large:
+    they are what a unit or a column that is another would be told as.
 
-    :param traces: every channel, measured and predicted.
+    :param ready: the problem.
+    :param final: what was found.
     :return: a sentence for each motor's torque.
     """
+    causes = enumerate(final.causes)
+    whole = ready.whole
+    uses = whole.uses(final.without(*(k for k, c in causes if c.effect in SCALING)))
     powers: dict[str, list[tuple[float, float]]] = {}
-    for trace in traces:
-        if trace.channel.startswith('actuator/') and trace.channel.endswith('/effort'):
-            powers.setdefault(trace.channel, []).append(
-                (float(np.sum(trace.before**2)), float(np.sum(trace.measured**2)))
-            )
+    for segment, rows in zip(whole.rollouts.segments, whole.rollouts.predicted(uses), strict=True):
+        for m, row in zip(segment.measured, rows, strict=True):
+            known = np.isfinite(m.value)
+            if m.sensor.kind == 'motor_torque' and known.any():
+                powers.setdefault(m.sensor.channel, []).append(
+                    (float(np.sum(row[known] ** 2)), float(np.sum(m.value[known] ** 2)))
+                )
     found = []
     for channel, parts in powers.items():
         expected, measured = np.sqrt(np.sum(parts, axis=0))
         if math.isfinite(expected) and expected > WEAK * measured:
             found.append(
-                f'{channel} is {expected / max(measured, 1e-30):.0f} times weaker than the file '
-                'foretells for this motion, which no effect makes it: a column that was taken '
-                'for another, or a unit (of the torque, or degrees as rad), is likelier'
+                f'{channel} is {expected / max(measured, 1e-30):.0f} times weaker than this '
+                'motion takes by the file: a column that was taken for another, or a unit (of the '
+                'torque, or degrees as rad), is likelier than any effect'
             )
     return found
 

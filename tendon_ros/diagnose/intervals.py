@@ -126,11 +126,11 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     Return the causes of which not even whether they are there can be told by their sizes.
 
     Where a torque constant is guessed, friction may be as small as that may be large: it is there
-    all the same, whatever its unit. What the file states with a tolerance has its own unit.
+    all the same, whatever its unit. What the file has of it is in its own unit.
 
     :param problem: the data.
     :param fit: the fit.
-    :return: those of which every size may as well be none, or every number as the file has it.
+    :return: those of which every size may as well be none, or all numbers as the file has them.
     """
     found = set()
     units = [t.guessed and t.quantity == 'torque_gain' for t in problem.tolerances]
@@ -138,12 +138,9 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     rows = parameter_intervals(problem, fit, np.array([False] * own + units))
     whole = parameter_intervals(problem, fit)
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
-        stated = {
-            t.parameter: t.axis for t in problem.tolerances if t.given and t.is_moved_by(cause)
-        }
-        if stated:
-            ends = {name: whole[k][name] for name in stated}
-            if all(ends[n][0] < a.high and ends[n][1] > a.low for n, a in stated.items()):
+        if cause.given:
+            own = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}
+            if all(_may_be_given(p, whole[k][p.name], own.get(p.name)) for p in cause.parameters):
                 found.add(k)
             continue
         sizes = [
@@ -152,6 +149,13 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
         if sizes and all(row[p.name][0] <= p.neutral <= row[p.name][1] for p in sizes):
             found.add(k)
     return frozenset(found)
+
+
+def _may_be_given(parameter: Parameter, ends: tuple[float, float], own: Axis | None) -> bool:
+    """Return whether a parameter may be what the file has, or within ``own`` tolerance of it."""
+    value = parameter.typical if parameter.is_shape else parameter.neutral
+    low, high = (value, value) if own is None else (own.low, own.high)
+    return ends[0] <= high and ends[1] >= low
 
 
 def number_intervals(

@@ -19,7 +19,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
-from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, weak_words
+from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, UNITS, weak_words
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
@@ -149,7 +149,6 @@ def diagnose(
         names = sorted(measured)
         rig = with_encoders(instrument, given)
         ahead = next_experiments(rig, names, problem, found, held, jobs, patience, report)
-    traces = gather.traces(heard, final.model)
     moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))
     diagnosis = Diagnosis(
         verdict=verdict,
@@ -172,8 +171,8 @@ def diagnose(
         next_experiment=ahead,
         doubts=(
             *strong_words(runs, instrument),
-            *weak_words(traces),
-            *absurd_words(moved),
+            *weak_words(heard, final.model),
+            *absurd_words([m for m in moved if m.quantity in UNITS]),
             *(loud_words(heard) if verdict == 'no_gap' else []),
         ),
         left_out=(
@@ -188,13 +187,14 @@ def diagnose(
             *loops.left_out,
             *gather.pushed_words(heard),
             *gather.worse_words(channels),
+            *absurd_words([m for m in moved if m.quantity not in UNITS]),
             *patience.words(found.unmet),
         ),
     )
     evidence = Evidence(
         instrument=instrument.name,
         recordings=tuple(r.name for r in runs),
-        traces=traces,
+        traces=gather.traces(heard, final.model),
         closed_loop=loops.traces,
         steps=gather.steps(heard, found),
         floors=gather.floors(heard.problem),

@@ -76,8 +76,10 @@ class Tolerance:
         :param cause: the cause.
         :return: whether.
         """
+        # what happens once more is not what the file says happened
+        again = self.given and bool(cause.instants)
         return (cause.effect, cause.place) == (self.effect, self.place) and any(
-            p.name == self.parameter for p in cause.parameters
+            p.name == self.parameter and not again for p in cause.parameters
         )
 
 

@@ -12,9 +12,14 @@ TIME = np.arange(200) * 0.01
 ANGLE = 400.0 * np.sin(3.0 * TIME)  # [deg] more than a turn each way
 
 
-def recorded(tmp_path, wrap, angle):
+def recorded(tmp_path, wrap, angle, time=TIME):
     """Return what is imported of angles [deg] as a servo reads them, 0 to 360, by a mapping."""
-    rows = [f'{t:.3f},{a}' for t, a in zip(TIME, angle, strict=True)]
+    return imported(tmp_path, wrap, angle, time)[POSITION]
+
+
+def imported(tmp_path, wrap, angle, time=TIME):
+    """Return the run."""
+    rows = [f'{t:.3f},{a}' for t, a in zip(time, angle, strict=True)]
     (tmp_path / 'run.csv').write_text('\n'.join(['t,a', *rows]), encoding='utf-8')
     (tmp_path / 'map.yaml').write_text(
         'format: csv\n'
@@ -23,7 +28,7 @@ def recorded(tmp_path, wrap, angle):
         encoding='utf-8',
     )
     [run] = import_runs(tmp_path / 'run.csv', load_mapping(tmp_path / 'map.yaml'))
-    return run[POSITION]
+    return run
 
 
 @pytest.mark.parametrize('wrap', ['360 deg', '1 turn', '6.283185307179586 rad'])
@@ -47,3 +52,19 @@ def test_a_wrap_that_cannot_be_is_one_line(tmp_path, wrap, words):
     with pytest.raises(RecordingError, match=words) as caught:
         recorded(tmp_path, f', wrap: {wrap}', ANGLE)
     assert POSITION in str(caught.value)
+
+
+def test_rows_that_are_left_out_make_no_turn(tmp_path):
+    angle, time = np.mod(ANGLE, 360.0), TIME.copy()
+    angle[[50, 90]], time[[50, 90]] = (angle[50] + 170.0, angle[90] - 170.0), 0.0
+    kept = np.isin(np.arange(TIME.size), [50, 90], invert=True)
+    found = recorded(tmp_path, ', wrap: 360 deg', angle, time)
+    assert found.value == pytest.approx(-np.deg2rad(ANGLE[kept]))
+
+
+def test_behind_a_gear_a_turn_is_less(tmp_path):
+    read = np.mod(ANGLE, 360.0)
+    found = recorded(tmp_path, ', scale: 0.05, wrap: 360 deg', read)
+    assert found.value == pytest.approx(-0.05 * np.deg2rad(ANGLE))
+    told = imported(tmp_path, ', wrap: 360 deg', 0.05 * read).warnings
+    assert any('give its wrap in the unit of the channel' in text for text in told)

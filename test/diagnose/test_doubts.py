@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, weak_words
-from tendon_ros.diagnose.evidence import Moved, Trace
+from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
 EFFORT = 'actuator/pulley_body/effort'
@@ -50,21 +52,31 @@ def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(me
 
 
 @pytest.mark.parametrize(('times', 'said'), [(100.0, True), (3.0, False)])
-def test_far_less_torque_than_the_motion_takes_makes_one_doubt_a_column(times, said):
-    torque = np.sin(np.linspace(0.0, 20.0, 500))
-    trace = Trace(
-        recording='run',
-        channel=EFFORT,
-        unit='N m',
-        time=np.linspace(0.0, 5.0, 500),
-        measured=torque / times,
-        before=torque,
-        after=torque,
-        held_out=np.zeros(500, dtype=bool),
-    )
-    words = weak_words([trace, replace(trace, channel='load_cell/force', unit='N')])
+@pytest.mark.parametrize('found', [(), (Candidate('torque_gain', 'motor_body'), {'gain': 50.0})])
+def test_far_less_torque_than_the_motion_takes_makes_one_doubt_a_column(
+    measured_on, times, said, found
+):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '6 s'), ('amplitude', '30 deg')))
+    effort = run[EFFORT]
+    ready = prepared([run.with_channels([replace(effort, value=effort.value / times)])], body)
+    model = ready.problem.empty.joined(*found) if found else ready.problem.empty
+    words = weak_words(ready, model)
     assert bool(words) is said
-    assert all('100 times' in one and EFFORT in one for one in words)
+    assert all('times weaker' in one and EFFORT in one for one in words)
+
+
+def test_a_weight_that_is_not_there_is_no_wrong_column(measured_on):
+    """It is what the file has too much, and found as that."""
+    body = load_instrument('single_body')
+    weight = EffectUse('gravity', 'pulley_body', {'torque': 2.0, 'phase': 1.0})
+    heavy = replace(body, effects=(weight,))
+    ready = prepared([measured_on(body)], heavy)
+    measured = [s.channel for s in heavy.sensors]
+    [another] = [c for c in everyone(heavy, measured) if c.effect == 'gravity']
+    empty = ready.problem.empty
+    assert weak_words(ready, empty)
+    assert not weak_words(ready, empty.joined(another, {'torque': 0.0, 'phase': 1.0}))
 
 
 @pytest.mark.parametrize(

@@ -86,3 +86,18 @@ def test_of_equals_what_contradicts_a_measurement_comes_last(arm, weight):
         if c == replace(weight, stated=False)
     ]
     assert other.price == len(other.parameters)
+
+
+@pytest.mark.parametrize('known', [{'pulley_arm.gravity.torque': 0.05}, {}])
+def test_another_phase_of_which_nothing_is_said_is_another_weight(arm, measured_on, known):
+    """Its torque is as the file has it; less said in the file hides nothing."""
+    plain = {n: s for n, s in arm.tolerances.items() if 'gravity' not in n}
+    silent = replace(arm, tolerances={**plain, **known})
+    [weight] = [
+        c for c in everyone(silent, [s.channel for s in arm.sensors]) if c.effect == 'gravity'
+    ]
+    run = measured_on(weighing(arm, 0.4, 0.3), settings=SETTINGS)
+    problem = prepared([run], silent).problem
+    values = {'torque': 0.4, 'phase': 0.3}
+    fit = problem.fitted(problem.empty.joined(weight, values), rounds=6)
+    assert not unsized(problem, fit)

@@ -5,7 +5,9 @@ import math
 
 import pytest
 
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.tolerance import REACH, tolerances
+from tendon_ros.model.instrument import EffectUse
 
 
 def by_name(instrument):
@@ -83,3 +85,10 @@ def test_what_the_tip_met_is_rarely_measured(bench):
     unknown = replace(bench, contacts=(hard,), tolerances={'contact.damping': math.inf})
     quiet = by_name(replace(bench, contacts=(hard,)))['contact.damping'].axis
     assert by_name(unknown)['contact.damping'].axis.high >= quiet.high
+
+
+def test_a_push_that_happens_once_more_is_not_that_of_the_file(bench):
+    push = EffectUse('disturbance', 'pulley_2', {'torque': 0.2, 'start': 1.0, 'duration': 0.5})
+    known = replace(bench, effects=(push,), tolerances={'pulley_2.disturbance.torque': 0.1})
+    [torque] = [t for t in tolerances(known) if t.effect == 'disturbance']
+    assert not torque.is_moved_by(Candidate('disturbance', 'pulley_2'))

@@ -17,6 +17,7 @@ LONG_GAP = 0.5  # [s] beyond which the motion is unknown
 LEAP = 20.0  # times the steps around it: no motor moves like that between two samples
 AROUND = 5  # samples
 TURN = 2.0 * math.pi  # [rad]
+ALL = 0.9  # part of all that it reads by which a reading begins anew
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,10 @@ def _leaps(channel: Channel) -> Iterator[Break]:
         pace = max(left, right)
         # in motion on both sides: between rests, a small servo may well go like that
         if min(left, right) > 0.0 and leap[n] > LEAP * pace:
+            after = '360 deg' if abs(leap[n] - TURN) <= 2.0 * pace else f'{leap[n]:.4g} rad'
             cause = (
-                'the reading begins anew each turn: import it with wrap: 360 deg in its mapping'
-                if abs(leap[n] - TURN) <= 2.0 * pace
+                f'the reading begins anew: import it with wrap: {after} in its mapping'
+                if leap[n] >= ALL * np.ptp(channel.value)
                 else 'the clock jumped back and samples were lost, or the encoder miscounted'
             )
             words = (
