@@ -112,7 +112,7 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
 def _unturned(place: str, value: FloatArray, period: float) -> list[str]:
     """Say that readings leap through all of their range, but not by so much as they wrap at."""
     step = float(np.abs(np.diff(value)).max(initial=0.0))
-    if step > 0.5 * period or step < LEAP * float(np.ptp(value)):
+    if step == 0.0 or step > 0.5 * period or step < LEAP * float(np.ptp(value)):
         return []
     return [
         f'{place} leaps by {step:.4g}, and wraps at {period:.4g}: give its wrap in the unit of '

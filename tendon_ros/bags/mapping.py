@@ -116,7 +116,13 @@ class Time(_Strict):
     @field_validator('rate')
     @classmethod
     def _is_rate(cls, value: str | None) -> str | None:
-        if value is not None and factor(value, 'Hz') < 0.0:
+        if value is None:
+            return None
+        try:
+            rate = factor(value, 'Hz')
+        except ValueError as error:
+            raise ValueError(f"{error}; write a rate such as '1 kHz'") from None
+        if rate < 0.0:
             raise ValueError(f'{value!r} is negative')
         return value
 

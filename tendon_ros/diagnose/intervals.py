@@ -139,8 +139,12 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     whole = parameter_intervals(problem, fit)
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
         if cause.given:
-            own = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}
-            if all(_may_be_given(p, whole[k][p.name], own.get(p.name)) for p in cause.parameters):
+            known = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}
+            if all(
+                _may_be_given(p, whole[k][p.name], known.get(p.name))
+                for p in cause.parameters
+                if cause.given_size or not p.is_shape
+            ):
                 found.add(k)
             continue
         sizes = [
@@ -151,10 +155,10 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     return frozenset(found)
 
 
-def _may_be_given(parameter: Parameter, ends: tuple[float, float], own: Axis | None) -> bool:
-    """Return whether a parameter may be what the file has, or within ``own`` tolerance of it."""
+def _may_be_given(parameter: Parameter, ends: tuple[float, float], known: Axis | None) -> bool:
+    """Return whether a parameter may be what the file has, or within a tolerance of it."""
     value = parameter.typical if parameter.is_shape else parameter.neutral
-    low, high = (value, value) if own is None else (own.low, own.high)
+    low, high = (value, value) if known is None else (known.low, known.high)
     return ends[0] <= high and ends[1] >= low
 
 

@@ -43,9 +43,19 @@ class Candidate:
         known = dict(self.given)
         effect = find(self.effect)
         own = [self.magnitude.sized(p) for p in effect.parameters if p.search != 'guess']
-        if all(known.get(p.name, p.neutral) == p.neutral for p in own if not p.is_shape):
+        if not self.given_size:
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
+
+    @property
+    def given_size(self) -> bool:
+        """Whether the file gives it a size, so that a shape means something, too."""
+        known, own = dict(self.given), find(self.effect).parameters
+        return any(
+            known.get(p.name, p.neutral) != p.neutral
+            for p in own
+            if p.search != 'guess' and not p.is_shape
+        )
 
     @property
     def price(self) -> int:

@@ -289,6 +289,7 @@ def with_effort(**fields):
         (changed(time={'column': 0, 'rate': '1 Hz'}), 'either a column or a rate'),
         (changed(time={'rate': '-5 Hz'}), 'negative'),
         (changed(time={'rate': '5 m'}), 'is not in Hz'),
+        (changed(time={'rate': 1000}), "write a rate such as '1 kHz'"),
         (changed(time={'rate': '6000 rpm'}), 'its angle has no place there'),
         (changed(channels={}), 'channels'),
         (changed(channels={'motor/position': POSITION}), 'no topic carries it'),

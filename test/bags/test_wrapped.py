@@ -68,3 +68,7 @@ def test_behind_a_gear_a_turn_is_less(tmp_path):
     assert found.value == pytest.approx(-0.05 * np.deg2rad(ANGLE))
     told = imported(tmp_path, ', wrap: 360 deg', 0.05 * read).warnings
     assert any('give its wrap in the unit of the channel' in text for text in told)
+
+
+def test_a_motor_that_stood_still_is_told_nothing(tmp_path):
+    assert not imported(tmp_path, ', wrap: 360 deg', np.full(TIME.size, 12.0)).warnings
