@@ -182,8 +182,8 @@ def _check_years(place: str, time: FloatArray, epoch_ns: int) -> None:
                 year = (datetime(1970, 1, 1) + timedelta(seconds=stamp // 10**9)).year
                 raise RecordingError(
                     f'{place}: its time reaches the year {year}, and ROS has stamps from 1970 to '
-                    '2037; say in the mapping, as its epoch, from when on the time counts: '
-                    "LabVIEW's from 1904-01-01"
+                    '2037; say in the mapping, as its epoch, from when on the time counts '
+                    "(LabVIEW's from 1904-01-01), or any later one where the clock was not set"
                 )
 
 

@@ -171,17 +171,23 @@ def _one_run(path: Path, arrays: Mapping[str, Any]) -> Table:
     columns = {}
     for name in arrays:
         array = np.asarray(arrays[name])
+        if array.ndim == 2 and array.shape[1] == 1:  # a column as MATLAB and pandas write it
+            array = array[:, 0]
         if array.ndim == 1 and array.dtype.kind in 'fiub':
             columns[name] = array.astype(np.float64)
-    lengths = {array.size for array in columns.values()}
-    if len(lengths) > 1:
-        # Constants and look-up tables live beside the signals: the longest are the signals.
-        columns = {name: a for name, a in columns.items() if a.size == max(lengths)}
+    most = max((array.size for array in columns.values()), default=0)
+    # Constants and look-up tables live beside the signals: the longest are the signals.
+    faults = {
+        name: f'{name} has {a.size} numbers, and the longest array {most}'
+        for name, a in columns.items()
+        if a.size < most
+    }
+    columns = {name: a for name, a in columns.items() if name not in faults}
     if not columns:
         raise RecordingError(
             f'{path}: no column of numbers among {listed(arrays)}; name the tables under runs'
         )
-    return Table(path.stem, columns)
+    return Table(path.stem, columns, faults=faults)
 
 
 def _run(path: Path, arrays: Mapping[str, Any], key: str, runs: Runs) -> Table:

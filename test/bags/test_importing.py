@@ -114,7 +114,7 @@ def test_columns_by_name(tmp_path, kind):
     columns = {'t': TIME * 1e3, 'motor': COUNTS, 'gain': np.array([3.0])}
     path = tmp_path / f'one.{kind}'
     if kind == 'npz':
-        np.savez(path, **columns)
+        np.savez(path, **{name: column[:, None] for name, column in columns.items()})
     elif kind == 'mat':
         scipy.io.savemat(path, columns)
     else:
@@ -126,6 +126,12 @@ def test_columns_by_name(tmp_path, kind):
     (run,) = imported(tmp_path, path, changed(format=kind, **BY_NAME))
     np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
     np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
+
+
+def test_signals_that_are_shorter_than_something_else_are_told(tmp_path):
+    np.savez(tmp_path / 'x.npz', t=TIME * 1e3, motor=COUNTS, table=np.arange(3.0 * N))
+    with pytest.raises(RecordingError, match=rf't has {N} numbers, and the longest array {3 * N}'):
+        imported(tmp_path, tmp_path / 'x.npz', changed(format='npz', **BY_NAME))
 
 
 def test_runs_of_a_mat_file(tmp_path):
