@@ -18,10 +18,9 @@ from tendon_ros.identify.explanation import Model
 LOUD = 3.0
 #: times that a motor's torque is weaker than it can be
 WEAK = 20.0
-#: effects by which torques or motions are another number of times as large; and the guesses that
-#: do the same: others may well be off by fifty times
+#: effects, and numbers of the file, by which torques or motions are another number of times as
+#: large: other guesses may well be off by fifty times
 SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
-UNITS = frozenset({'torque_gain', 'inertia'})
 
 
 def absurd_words(moved: Sequence[Moved]) -> list[str]:

@@ -140,8 +140,9 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
         if cause.given:
             known = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}
+            values = cause.as_given
             if all(
-                _may_be_given(p, whole[k][p.name], known.get(p.name))
+                _overlap(whole[k][p.name], values[p.name], known.get(p.name))
                 for p in cause.parameters
                 if cause.given_size or not p.is_shape
             ):
@@ -155,9 +156,8 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     return frozenset(found)
 
 
-def _may_be_given(parameter: Parameter, ends: tuple[float, float], known: Axis | None) -> bool:
-    """Return whether a parameter may be what the file has, or within a tolerance of it."""
-    value = parameter.typical if parameter.is_shape else parameter.neutral
+def _overlap(ends: tuple[float, float], value: float, known: Axis | None) -> bool:
+    """Return whether an interval holds what the file has, or any of its tolerance."""
     low, high = (value, value) if known is None else (known.low, known.high)
     return ends[0] <= high and ends[1] >= low
 

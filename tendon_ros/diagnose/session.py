@@ -19,7 +19,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
-from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, UNITS, weak_words
+from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, SCALING, weak_words
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
@@ -172,7 +172,7 @@ def diagnose(
         doubts=(
             *strong_words(runs, instrument),
             *weak_words(heard, final.model),
-            *absurd_words([m for m in moved if m.quantity in UNITS]),
+            *absurd_words([m for m in moved if m.quantity in SCALING]),
             *(loud_words(heard) if verdict == 'no_gap' else []),
         ),
         left_out=(
@@ -187,7 +187,7 @@ def diagnose(
             *loops.left_out,
             *gather.pushed_words(heard),
             *gather.worse_words(channels),
-            *absurd_words([m for m in moved if m.quantity not in UNITS]),
+            *absurd_words([m for m in moved if m.quantity not in SCALING]),
             *patience.words(found.unmet),
         ),
     )

@@ -58,6 +58,11 @@ class Candidate:
         )
 
     @property
+    def as_given(self) -> dict[str, float]:
+        """The parameters with which it changes nothing: as the file has them, or of no size."""
+        return {p.name: p.typical if p.is_shape else p.neutral for p in self.parameters}
+
+    @property
     def price(self) -> int:
         """How many parameters it costs: of equals, what contradicts a measurement comes last."""
         return len(self.parameters) + self.stated

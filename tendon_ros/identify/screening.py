@@ -222,8 +222,7 @@ class Screen:
         }
         if not own:
             return (0.0,) * len(coordinates.sizes)
-        known = {p.name: p.typical if p.is_shape else p.neutral for p in candidate.parameters}
-        places = coordinates.place({**known, **own})
+        places = coordinates.place({**candidate.as_given, **own})
         return tuple(places[n] for n in coordinates.sizes)
 
     def _changes(self, proposal: Proposal, at: Sequence[float]) -> FloatArray | None:

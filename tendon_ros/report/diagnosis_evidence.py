@@ -15,6 +15,7 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
     effect_words,
+    gap_scale,
     inside,
     known_words,
     moved_words,
@@ -80,7 +81,7 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
     )
     rows = []
     for gap in gaps:
-        factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
+        factor, unit = gap_scale(gap)
         after, interval = with_interval(factor * gap.after, _scaled(gap.ci95, factor), '1')
         rows.append(
             (

@@ -12,12 +12,12 @@ from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
     effect_words,
+    gap_scale,
     inside,
     joined,
     number,
     percent,
     place_words,
-    scale,
 )
 
 _MOST_ROWS, _MOST_COLUMNS = 10, 6
@@ -212,7 +212,7 @@ def _joining(step: Step) -> str:
 
 
 def _channel_bar(gap: ChannelGap, full: float) -> Bar:
-    factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
+    factor, unit = gap_scale(gap)
     before, after, floor = (
         number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor)
     )

@@ -22,6 +22,7 @@ from tendon_ros.report.diagnosis_verdict import (
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     effect_words,
+    gap_scale,
     inside,
     known_words,
     likely_at,
@@ -29,7 +30,6 @@ from tendon_ros.report.diagnosis_words import (
     number,
     percent,
     place_words,
-    scale,
 )
 
 _WIDTH = 96
@@ -122,7 +122,7 @@ def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
         ('channel', 'before', 'after', 'floor', '', 'before/floor', 'after/floor')
     ]
     for gap in gaps:
-        factor, unit = scale(gap.unit, max(gap.after, gap.noise_floor))
+        factor, unit = gap_scale(gap)
         rmse = (number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor))
         rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
     widths = [max(len(row[k]) for row in rows) for k in range(7)]

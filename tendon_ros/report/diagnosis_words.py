@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 import math
 
 from tendon_ros.diagnose.evidence import Moved
+from tendon_ros.diagnose.result import ChannelGap
 from tendon_ros.effects import find
 
 _SENSORS = {'torque': 'torque sensor', 'shaft': 'shaft torque sensor', 'speed': 'speed sensor'}
@@ -105,6 +106,16 @@ def scale(unit: str, size: float) -> tuple[float, str]:
     if unit.split('/')[0].split(' ')[0] not in _SCALABLE or not 0.0 < size < 0.1:
         return 1.0, shown
     return (1e3, f'm{shown}') if size >= 1e-4 else (1e6, f'µ{shown}')
+
+
+def gap_scale(gap: ChannelGap) -> tuple[float, str]:
+    """
+    Return how to show the gap of a channel: what is left of it may be far below its noise.
+
+    :param gap: the gap.
+    :return: factor on the values, and the unit with its prefix.
+    """
+    return scale(gap.unit, max(gap.after, gap.noise_floor))
 
 
 def with_unit(value: float, unit: str, digits: int = 2) -> str:
