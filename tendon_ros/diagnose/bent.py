@@ -233,6 +233,23 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     return model.values(k)['limit'] < usual
 
 
+def needs_excuse(problem: Problem, model: Model, k: int) -> bool:
+    """
+    Return whether a cause scales the torque of a motor whose limit excuses whatever it gives.
+
+    The motor may then give ten times as much, and the misfit of its torque is as many times less.
+
+    :param problem: the data.
+    :param model: causes.
+    :param k: which of them.
+    :return: whether.
+    """
+    cause = model.causes[k]
+    if cause.effect != 'torque_gain':
+        return False
+    return any(limit.place == cause.place for limit in excused(problem, model))
+
+
 def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
     """
     Return which causes of a model are such limits.

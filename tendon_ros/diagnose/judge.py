@@ -175,9 +175,9 @@ def _signs(
     events = [cause for cause in gone if cause.instants]
     form = own_power(problem, found.start) + sum(wrong)
     grown = min(gains(problem, without, final)[0], BOUNDLESS)
-    # numbers that have to be off without it speak for it, too, where it shows
+    # numbers that have to be off without it speak for it, too, where it shows, if it does
     showing = sum(gained[c] * np.count_nonzero(own) for c, own in channels.items()) / every
-    strain = (_strain(without) - _strain(final)) / max(showing, 1.0)
+    strain = (_strain(without) - _strain(final)) / (showing or len(final.left))
     return Signs(
         worth=max(there(gain) + strain, 1e-9),
         left=there(left.by_channel) + ELSEWHERE * left.whole,

@@ -232,18 +232,21 @@ def _searched(
             memory.weigh(by)
         found = search(by, memory)
     for sign in signless(ready.problem, candidates):
-        # guesses go far to do without a lost sign, and what is found beside them imitates it
-        imitated = beyond_laws(ready.problem, found.start, found.final)
-        if not imitated or sign in found.final.model.causes or patience.over:
-            continue
-        begun = ready.problem.fitted(lost(ready.problem.begun, sign))
-        # begun with a sign that nobody needs, a search would only do the same again
-        if not worthwhile(ready.problem, found.start, found.start, begun):
-            continue
-        report('looking again: a sensor may have lost its sign', 0.0)
-        other = search(begun.model)
-        if other.final.cost < GAINED * found.final.cost:
-            found = other
+        # guesses go far to do without a sign, and what is found beside them imitates it: so it is
+        # asked alone. Beside a constant torque next to nothing turns round: there it comes last
+        first, last = (found.start, ready.problem.begun), (found.final, found.final.model)
+        for before, model in (first, last):
+            imitated = beyond_laws(ready.problem, found.start, found.final)
+            if not imitated or sign in found.final.model.causes or patience.over:
+                break
+            begun = ready.problem.fitted(lost(model, sign))
+            # begun with a sign that nobody needs, a search would only do the same again
+            if not worthwhile(ready.problem, found.start, before, begun):
+                continue
+            report('looking again: a sensor may have lost its sign', 0.0)
+            other = search(begun.model)
+            if other.final.cost < GAINED * found.final.cost:
+                found = other
     again = ready.heard_again(found.final.model)
     # what stands in for something unknown may take noise away as well, and tells no more
     if again.quieter(ready) and _worth_more(ready, found, patience):

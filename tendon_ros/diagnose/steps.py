@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, biased, degenerate, excused, excuses
+from tendon_ros.diagnose.bent import at_once, biased, degenerate, excused, excuses, needs_excuse
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
@@ -176,6 +176,7 @@ class Steps:
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
             and excused(self.problem, r.fit.model) <= set(state.model.causes)
+            and not needs_excuse(self.problem, r.fit.model, len(state.model.causes))
         ]
         return sorted(found, key=judged_cost)
 
@@ -248,7 +249,8 @@ class Steps:
             cause, values = model.causes[k], model.values(k)
             # who sinks is kept for those beside it
             kept = cause in stood and len(model.causes) > 1
-            if not kept and excuses(self.problem, model, k):
+            idle = not kept and excuses(self.problem, model, k)
+            if idle or needs_excuse(self.problem, model, k):
                 model = model.without(k)
                 continue
             other = simpler(cause, values) or plain(self.problem, model, k)

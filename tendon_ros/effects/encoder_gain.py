@@ -36,6 +36,7 @@ EFFECT = Effect(
             typical=1.02,
         ),
     ),
+    by_others=True,
     modify=modify,
     sensors=('angle',),
 )

@@ -37,6 +37,7 @@ EFFECT = Effect(
             typical=1.05,
         ),
     ),
+    by_others=True,
     modify=modify,
     sensors=('contact_force', 'contact_torque', 'loop_torque'),
 )

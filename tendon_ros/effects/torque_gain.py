@@ -36,5 +36,6 @@ EFFECT = Effect(
             typical=0.9,
         ),
     ),
+    by_others=True,
     modify=modify,
 )

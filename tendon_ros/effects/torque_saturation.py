@@ -56,6 +56,7 @@ EFFECT = Effect(
             search='shape',
         ),
     ),
+    by_others=True,
     modify=modify,
     form=0.025,
 )

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.effects import find
 from tendon_ros.identify.beside import Beside
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
@@ -21,8 +22,9 @@ from tendon_ros.identify.starting import Starting
 
 FloatArray = NDArray[np.float64]
 
-#: signatures by the proposals that they belong to, and by the lost signs beside which they were
-#: seen: without its sign, what is read is upside down half of the time
+#: signatures by the proposals that they belong to, and by the causes beside which they were seen:
+#: all of them for what acts by others, else the lost signs, for without its sign what is read is
+#: upside down half of the time
 Seen = dict[tuple[Candidate, tuple[float, ...], frozenset[Candidate]], NDArray[np.float32] | None]
 
 SUSPECT = 1.5  # deviations of a number of the file from which on its effect is suspected
@@ -88,6 +90,7 @@ class Screen:
         self.problem = problem
         self.fit = fit
         self._seen: Seen = {} if seen is None else seen
+        self._causes = frozenset(fit.model.causes)
         self._signs = frozenset(c for c in fit.model.causes if c.switches)
         self._starting = Starting(problem, fit)
         self._free = problem.free(fit)
@@ -170,7 +173,9 @@ class Screen:
         """Return the signature of a first look, perhaps as it was beside another state."""
         if proposal.candidate.instants:  # as large as what is left here says
             return self._changes(proposal, at)
-        key = (proposal.candidate, proposal.z, self._signs)
+        by_others = find(proposal.candidate.effect).by_others
+        beside = self._causes if by_others else self._signs
+        key = (proposal.candidate, proposal.z, beside)
         if key not in self._seen:
             found = self._changes(proposal, at)
             self._seen[key] = None if found is None else found.astype(np.float32)
