@@ -97,6 +97,9 @@ def test_numbers_that_have_to_be_off_without_a_cause_speak_for_it(ready, monkeyp
     plain, more = (signs_beside(ready.problem, found, w, left) for w in (without, strained))
     # it shows in some channels, and there the more
     assert more.worth > plain.worth + 0.2
+    # and where it shows in none, it says no more than it costs each sample
+    nothing = replace(found.final, cost=found.final.cost + 0.2 * samples)
+    assert signs_beside(ready.problem, found, nothing, left).worth == pytest.approx(0.2)
     # and may lose so much of what was held out
     held = sum(int(mask.sum()) for mask in ready.held.masks)
     gained = NOTHING * (without.cost - found.final.cost) / samples

@@ -150,3 +150,36 @@ def test_a_lost_sign_hides_no_friction_from_the_search():
     told = {(c.effect, c.place) for c in found.diagnosis.causes}
     assert told == {(e['effect'], e['place']) for e in case.label['effects']}
     assert len(told) == 3
+
+
+def test_a_sign_is_asked_beside_what_was_found_without_it(axis, recorded, monkeypatch):
+    """Beside a constant torque next to nothing turns round, so that it is found first."""
+    bias = ('torque_bias', 'motor_axis', {'torque': 0.1})
+    run = recorded(bias, LOST)
+    begun_from = []
+
+    class Searching:
+        """Finds the bias, and the sign only where it begins beside both."""
+
+        def __init__(self, problem, candidates, jobs, report, memory, begun, *_):
+            self.problem, self.begun = problem, begun
+            begun_from.append(frozenset() if begun is None else frozenset(begun.causes))
+
+        def run(self):
+            model = self.problem.empty
+            if self.begun is not None and len(self.begun.causes) == 2:
+                model = lost(model, SIGN)
+            model = model.joined(Candidate(*bias[:2]), bias[2])
+            return Found(states=[self.problem.fitted(m) for m in (self.problem.begun, model)])
+
+    monkeypatch.setattr(session, 'Search', Searching)
+    _, found = session._searched(
+        prepared([run], axis),
+        everyone(axis, sorted(run.channels)),
+        1,
+        lambda *_: None,
+        None,
+        Patience(600.0),
+    )
+    assert set(found.final.model.causes) == {SIGN, Candidate(*bias[:2])}
+    assert begun_from[-1] == set(found.final.model.causes)

@@ -71,6 +71,23 @@ def test_what_was_seen_with_a_sign_tells_nothing_once_it_is_lost(bench, measured
     assert best.values['torque'] == pytest.approx(0.1, rel=0.3)
 
 
+def test_what_was_seen_of_a_late_torque_tells_nothing_once_more_is_known_to_act(
+    bench, measured_on
+):
+    """By the file alone the torque that is late is another one."""
+    late = ('sensor_delay', 'torque_L', {'time': 0.012})
+    friction = ('coulomb_friction', 'pulley_L', {'torque': 0.3})
+    problem = prepared([measured_on(bench, late, friction)], bench).problem
+    candidate = Candidate(*late[:2])
+    seen: Seen = {}
+    Screen(problem, problem.fitted(problem.empty, rounds=0), seen).proposals(candidate)
+    rubbing = problem.empty.joined(Candidate(*friction[:2]), friction[2])
+    state = problem.fitted(rubbing, rounds=0)
+    assert Screen(problem, state, seen).proposals(candidate) == Screen(problem, state).proposals(
+        candidate
+    )
+
+
 def test_a_size_that_can_only_grow_is_not_made_smaller(bench, measured_on):
     rig_drives = ('coulomb_friction', 'pulley_3', {'torque': 0.1})
     run = measured_on(bench, rig_drives)
