@@ -66,7 +66,7 @@ def imitable(problem: Problem, state: Fit, k: int, does: FloatArray) -> float:
     cause = state.model.causes[k]
     if cause.dry:
         return by_friction(problem, does, change(problem, state, k))
-    if any(p.search == 'cycles' for p in cause.parameters):
+    if cause.waves:
         return 1.0 - _apart(does, _waves(problem, state, k))
     return 1.0
 

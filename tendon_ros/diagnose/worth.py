@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Sequence, Set
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_power, form_profile, own_power
+from tendon_ros.diagnose.form import form_parts, form_power, own_power
+from tendon_ros.diagnose.imitable import imitable
 from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.effects import find
@@ -63,14 +64,16 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     least = ATTEMPTS if eager else 1.0
     if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
         return False
-    profile = form_profile(problem, start, before)
-    form = own_power(problem, start) + float(np.mean(profile))
+    parts = form_parts(problem, start, before)
+    profile = np.sum([np.zeros(len(before.left)), *parts], axis=0)
+    own = own_power(problem, start)
+    form = own + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time, and nor is what has no law
         if all(stands_out_in_time(problem, before, after, event) for event in new):
             return True
         part = _part_where_it_happens(problem, before, after, new)
         return part > TAKES_EVENT or (part > HALF and gain > TIMES_EVENT * form)
-    if gain > form:
+    if gain > form or gain > own + _like_what_has_gone(problem, before, after, parts):
         return True
     # what the form of a law leaves has no other cause that would explain most of it
     most = (
@@ -79,6 +82,21 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
         or _apart(before, after, (profile < LEAST_IN_ONE) & free)
     )
     return most and not _bends(problem, after, new)
+
+
+def _like_what_has_gone(
+    problem: Problem, before: Fit, after: Fit, parts: Sequence[FloatArray]
+) -> float:
+    """
+    Return what laws may leave that looks like what has gone: a ripple errs in waves, if at all.
+
+    ``parts``: what the law of each cause may leave without the new ones.
+    """
+    gone = before.left - after.left
+    return sum(
+        float(np.mean(part)) * (imitable(problem, before, k, gone) if cause.waves else 1.0)
+        for k, (cause, part) in enumerate(zip(before.model.causes, parts, strict=True))
+    )
 
 
 def _part_where_it_happens(

@@ -101,6 +101,11 @@ class Candidate:
         return find(self.effect).dry
 
     @property
+    def waves(self) -> bool:
+        """Whether it comes again with every part of a turn."""
+        return any(p.search == 'cycles' for p in self.parameters)
+
+    @property
     def switches(self) -> bool:
         """Whether it is there or not, and has no size."""
         return any(p.search == 'switch' for p in self.parameters)
