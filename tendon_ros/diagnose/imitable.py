@@ -43,8 +43,8 @@ def alike(problem: Problem, final: Fit, without: Fit) -> list[float]:
     # a motor and the pulley that it turns are one place
     body = turned(problem.rollouts.instrument)
     places = {body.get(cause.place, cause.place) for cause in gone}
-    own = [change(problem, final, k) for k, cause in enumerate(causes) if cause in gone]
-    does = np.sum(own, axis=0)
+    # what the others make up for is none of its own
+    does = final.left - without.left
     return [
         imitable(problem, final, k, does)
         if cause not in gone and body.get(cause.place, cause.place) in places
