@@ -101,13 +101,40 @@ def test_a_weak_cause_counts_where_the_strong_one_is_silent(
     monkeypatch.setattr(worth, 'undoing', lambda *_: frozenset(range(undone)))
     quiet = np.arange(len(state.left)) % 100 < 60
     profile = np.where(quiet, 0.0, 1e4)  # so strong that its form hides everything, on average
-    monkeypatch.setattr(worth, 'form_profile', lambda *_: profile)
+    monkeypatch.setattr(worth, 'form_parts', lambda *_: [profile])
     left = np.where(quiet, 0.0, 5.0)
     off = left + np.where(quiet == silent, 2.0, 0.0)
     before = replace(state, left=off, cost=float(off @ off))
     model = state.model.joined(BIAS, {'torque': 0.01})
     after = replace(state, left=left, cost=float(left @ left), model=model)
     assert worthwhile(problem, start, before, after) is worth_it
+
+
+@pytest.mark.parametrize(('gone', 'worth_it'), [('weight', True), ('wave', False)])
+def test_a_cause_beside_a_ripple_is_asked_for_what_its_waves_may_get_wrong(
+    body, measured_on, monkeypatch, gone, worth_it
+):
+    ripple = Candidate('torque_ripple', 'motor_body')
+    values = {'amplitude': 0.3, 'cycles': 12.0, 'phase': 0.2}
+    weight = Candidate('gravity', 'pulley_body')
+    run = measured_on(body, (ripple.effect, ripple.place, values), settings=WIDE)
+    problem = prepared([run], body).problem
+    state = problem.fitted(problem.empty.joined(ripple, values), rounds=2)
+    model = state.model.joined(weight, {'torque': 0.001, 'phase': 0.0})
+    does = {
+        'weight': problem.left(state.model.joined(weight, {'torque': 0.1, 'phase': 0.0})),
+        'wave': problem.left(state.model.without(0).joined(ripple, {**values, 'cycles': 24.0})),
+    }[gone] - problem.left(state.model if gone == 'weight' else state.model.without(0))
+    does /= np.sqrt(np.mean(does**2))
+    # a form larger than what it explains of much more that is left
+    monkeypatch.setattr(worth, 'form_parts', lambda *_: [np.full(len(does), 3.0)])
+    stays = 4.0 * np.sin(0.03 * np.arange(len(does)))
+    stays -= does * (does @ stays) / (does @ does)
+    before, after = (
+        replace(state, left=left, cost=float(left @ left), model=causes)
+        for left, causes in ((stays + does, state.model), (stays, model))
+    )
+    assert worthwhile(problem, state, before, after) is worth_it
 
 
 @pytest.mark.parametrize(
@@ -137,7 +164,7 @@ def test_creep_gives_no_other_creep_the_form_that_its_law_has_not(
         leaving(3.0, problem.empty), leaving(0.6, state.model), leaving(0.0, model)
     )  # fmt: skip
     # more than any other cause explains, and less than the form of what is there may be
-    monkeypatch.setattr(worth, 'form_profile', lambda *_: np.full(len(noise), 5.0))
+    monkeypatch.setattr(worth, 'form_parts', lambda *_: [np.full(len(noise), 5.0)])
     assert worthwhile(problem, start, before, after) is worth_it
 
 
