@@ -15,9 +15,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_bound, excuses, is_constant, is_polled, spent, vanishes
+from tendon_ros.diagnose.bent import at_bound, is_constant, is_polled, spent, vanishes
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
+from tendon_ros.diagnose.excusing import excuses
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.giving_less import giving_less
 from tendon_ros.diagnose.intervals import unsized

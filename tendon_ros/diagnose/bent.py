@@ -21,8 +21,6 @@ from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.untold import guesses_torque
 from tendon_ros.identify.waves import shows, travel
-from tendon_ros.model.effect_use import in_force
-from tendon_ros.model.laws import modified
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
@@ -206,59 +204,6 @@ def biased(
             torque = values['stiffness'] * values['rest']
             return Candidate('torque_bias', f'motor_{motor.name}'), {'torque': torque}
     return None
-
-
-def excuses(problem: Problem, model: Model, k: int) -> bool:
-    """
-    Return whether a cause is a torque limit that nearly all torques pass.
-
-    A fit lowers it to have ever more excused, until it means nothing. None may come in like that;
-    one that is there may sink while others join, since it may stand for a motor that gives way
-    otherwise than by any limit. It is no cause then, but what joins would not be seen without it.
-
-    :param problem: the data.
-    :param model: causes.
-    :param k: which of them.
-    :return: whether.
-    """
-    cause = model.causes[k]
-    if cause.effect != 'torque_saturation':
-        return False
-    instrument = problem.rollouts.instrument
-    [uses, *_] = problem.uses(model)
-    numbers = modified(instrument, in_force(instrument.effects, uses))
-    names = [f'motor_{name}' for name in instrument.motor_names]
-    j = names.index(cause.place)
-    usual = problem.rollouts.usual(instrument.motor_names[j], numbers['motor_gain'][j])
-    return model.values(k)['limit'] < usual
-
-
-def needs_excuse(problem: Problem, model: Model, k: int) -> bool:
-    """
-    Return whether a cause scales the torque of a motor whose limit excuses whatever it gives.
-
-    The motor may then give ten times as much, and the misfit of its torque is as many times less.
-
-    :param problem: the data.
-    :param model: causes.
-    :param k: which of them.
-    :return: whether.
-    """
-    cause = model.causes[k]
-    if cause.effect != 'torque_gain':
-        return False
-    return any(limit.place == cause.place for limit in excused(problem, model))
-
-
-def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
-    """
-    Return which causes of a model are such limits.
-
-    :param problem: the data.
-    :param model: causes.
-    :return: those.
-    """
-    return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
 
 
 def at_once(

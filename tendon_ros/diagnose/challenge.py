@@ -10,7 +10,8 @@ from collections.abc import Sequence
 import math
 
 from tendon_ros.diagnose.begun import Begun
-from tendon_ros.diagnose.bent import degenerate, excused, is_polled
+from tendon_ros.diagnose.bent import degenerate, is_polled
+from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.left_out import left_out, sets_the_unit

@@ -9,8 +9,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_once, biased, degenerate, excused, excuses, needs_excuse
+from tendon_ros.diagnose.bent import at_once, biased, degenerate
 from tendon_ros.diagnose.clock import told_apart
+from tendon_ros.diagnose.excusing import (
+    EXCUSED,
+    excused,
+    excuses,
+    kept_for_others,
+    needs_excuse,
+    raised,
+)
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.patience import Patience
@@ -175,7 +183,10 @@ class Steps:
             for r in self.pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
-            and excused(self.problem, r.fit.model) <= set(state.model.causes)
+            and (
+                excused(self.problem, r.fit.model) <= set(state.model.causes)
+                or r.fit.cost < EXCUSED * state.cost
+            )
             and not needs_excuse(self.problem, r.fit.model, len(state.model.causes))
         ]
         return sorted(found, key=judged_cost)
@@ -202,7 +213,8 @@ class Steps:
         :param stood: those that were there before.
         :return: with those that are worth having.
         """
-        state = self.renamed(state, stood)
+        coming = kept_for_others(self.problem, state, stood)
+        state = self.renamed(state, stood, coming)
         model = self.parted(state)
         if model is not state.model:
             state = self.settled(model, self.problem.slopes(state))
@@ -230,17 +242,35 @@ class Steps:
             elif rough:
                 # carefully only once several have gone; what then is doubtful is asked anew
                 # those that are left came in as causes, and may sink now that others have gone
-                state, rough = self.renamed(self.settled(state.model), state.model.causes), False
+                settled = self.settled(state.model)
+                state, rough = self.renamed(settled, state.model.causes, coming), False
                 checked.clear()
             else:
-                return state
+                return self.raised(state)
 
-    def renamed(self, state: Fit, stood: Collection[Candidate] = ()) -> Fit:
+    def raised(self, state: Fit) -> Fit:
+        """
+        Fit limits that have sunk once more from above: below, nothing tells the way up.
+
+        :param state: with causes.
+        :return: the better fit.
+        """
+        model = raised(self.problem, state.model)
+        fit = state if model is state.model else self.settled(model)
+        return min(state, fit, key=lambda one: one.cost)
+
+    def renamed(
+        self,
+        state: Fit,
+        stood: Collection[Candidate] = (),
+        coming: Collection[Candidate] = (),
+    ) -> Fit:
         """
         Give causes the names that they deserve, join what is one, and drop what is none.
 
         :param state: with causes that a fit may have bent.
         :param stood: those that were there before: they may sink to excuses.
+        :param coming: excuses that are kept for what may come beside them.
         :return: the same where nothing has another name, else fitted again.
         """
         model = state.model
@@ -248,7 +278,7 @@ class Steps:
         for k in reversed(range(len(model.causes))):
             cause, values = model.causes[k], model.values(k)
             # who sinks is kept for those beside it
-            kept = cause in stood and len(model.causes) > 1
+            kept = (cause in stood and len(model.causes) > 1) or cause in coming
             idle = not kept and excuses(self.problem, model, k)
             if idle or needs_excuse(self.problem, model, k):
                 model = model.without(k)

@@ -18,6 +18,7 @@ from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.motor_gain import motor_gain
 from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
 from tendon_ros.identify.waves import shows
@@ -158,7 +159,7 @@ class Starting:
         return [one | {cycles.name: float(grid[k])} for k in peaks[:3] for one in shapes]
 
     def _levels(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
-        """Try limits between the largest torque that the motor reported and the usual one."""
+        """Try limits between the largest torque of what the motor reported and the usual one."""
         instrument = self._problem.rollouts.instrument
         [motor] = [m.name for m in instrument.motors if f'motor_{m.name}' == candidate.place]
         known = [
@@ -168,6 +169,8 @@ class Starting:
             if m.sensor.kind == 'motor_torque' and m.sensor.of == motor
         ]
         torques = np.concatenate(known) if known else np.zeros(0)
+        # the limit is one of what it gives
+        torques = motor_gain(self._problem, self._fit.model, motor) * torques
         if not torques.any():
             return []
         [name] = [p.name for p in candidate.parameters if p.search == 'level']

@@ -10,10 +10,7 @@ from tendon_ros.diagnose.bent import (
     at_once,
     biased,
     degenerate,
-    excused,
-    excuses,
     is_constant,
-    needs_excuse,
     spent,
     vanishes,
 )
@@ -127,31 +124,6 @@ def test_a_wave_that_comes_once_is_no_ripple_of_a_motor(measured_on, cycles, ben
     ripple = Candidate('torque_ripple', 'motor_body')
     values = {'amplitude': 0.1, 'cycles': cycles, 'phase': 0.0}
     assert degenerate(problem, ripple, values) is bent
-
-
-@pytest.mark.parametrize(('limit', 'sunk'), [(3.0, False), (0.005, True)])
-def test_a_limit_that_nearly_all_torques_pass_is_none(sound_problem, limit, sunk):
-    model = sound_problem.empty
-    model = model.joined(Candidate('torque_gain', 'motor_M'), {'gain': 0.9})
-    model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01})
-    assert excuses(sound_problem, model, 1) is sunk
-    assert not excuses(sound_problem, model, 0)
-    # whoever joins may bend another one into an excuse
-    model = model.joined(Candidate('coulomb_friction', 'pulley_M'), {'torque': 0.1})
-    limits = {Candidate('torque_saturation', 'motor_M')} if sunk else set()
-    assert excused(sound_problem, model) == limits
-
-
-@pytest.mark.parametrize(('place', 'limit', 'needs'), [
-    ('motor_M', 3.0, False), ('motor_M', 0.005, True), ('motor_L', 0.005, False),
-])  # fmt: skip
-def test_a_gain_beside_a_limit_that_excuses_is_none(sound_problem, place, limit, needs):
-    model = sound_problem.empty.joined(
-        Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01}
-    )
-    model = model.joined(Candidate('torque_gain', place), {'gain': 5.0})
-    assert needs_excuse(sound_problem, model, 1) is needs
-    assert not needs_excuse(sound_problem, model, 0)
 
 
 PUSH = {'torque': 0.1, 'start': 3.0, 'duration': 0.5}

@@ -1,0 +1,115 @@
+"""
+Torque limits that excuse: nearly all torques pass them, and no motion tells what those were.
+
+A fit lowers a limit to have ever more excused, until it means nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from tendon_ros.effects import find
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.motor_gain import motor_gain
+
+#: part of the cost without it that an excuse may leave which is kept for others: nothing else
+#: explains as much
+EXCUSED = 0.1
+#: times what a motor usually gives to which a limit is raised that had sunk below
+ABOVE = 1.05
+
+
+def excuses(problem: Problem, model: Model, k: int) -> bool:
+    """
+    Return whether a cause is a torque limit that nearly all torques pass.
+
+    A fit lowers it to have ever more excused, until it means nothing. None may come in like that;
+    one that is there may sink while others join, since it may stand for a motor that gives way
+    otherwise than by any limit. It is no cause then, but what joins would not be seen without it.
+
+    :param problem: the data.
+    :param model: causes.
+    :param k: which of them.
+    :return: whether.
+    """
+    cause = model.causes[k]
+    if cause.effect != 'torque_saturation':
+        return False
+    return model.values(k)['limit'] < _usual(problem, model, cause)
+
+
+def _usual(problem: Problem, model: Model, limit: Candidate) -> float:
+    """Return the torque that a motor usually gives, or less [N m]."""
+    motor = limit.place.removeprefix('motor_')
+    return problem.rollouts.usual(motor, motor_gain(problem, model, motor))
+
+
+def raised(problem: Problem, model: Model) -> Model:
+    """
+    Return a model whose limits are raised to where they excuse no more, and set in at once.
+
+    :param problem: the data.
+    :param model: causes.
+    :return: the model; the same where no limit excuses.
+    """
+    found = model
+    for cause in sorted(excused(problem, model)):
+        values = dict(find(cause.effect).typical) | {
+            'limit': ABOVE * _usual(problem, model, cause)
+        }
+        found = found.without(found.causes.index(cause)).joined(cause, values)
+    return found
+
+
+def needs_excuse(problem: Problem, model: Model, k: int) -> bool:
+    """
+    Return whether a cause scales the torque of a motor whose limit excuses whatever it gives.
+
+    The motor may then give ten times as much, and the misfit of its torque is as many times less.
+
+    :param problem: the data.
+    :param model: causes.
+    :param k: which of them.
+    :return: whether.
+    """
+    cause = model.causes[k]
+    if cause.effect != 'torque_gain':
+        return False
+    return any(limit.place == cause.place for limit in excused(problem, model))
+
+
+def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
+    """
+    Return which causes of a model are such limits.
+
+    :param problem: the data.
+    :param model: causes.
+    :return: those.
+    """
+    return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
+
+
+def kept_for_others(
+    problem: Problem, state: Fit, stood: Collection[Candidate]
+) -> frozenset[Candidate]:
+    """
+    Return the excuses among new causes that are kept for what may come beside them.
+
+    Of a motor that hardly ever gives what it reports nothing else can be seen without its limit,
+    and beside less than everything the limit sinks.
+
+    :param problem: the data.
+    :param state: with its derivatives.
+    :param stood: causes that were there before.
+    :return: those of its causes.
+    """
+    known = problem.slopes(state)
+
+    def without(cause: Candidate) -> Fit:
+        model = state.model.without(state.model.causes.index(cause))
+        return problem.fitted(model, known, rounds=6, accuracy=1e-2)
+
+    new = excused(problem, state.model) - set(stood)
+    return frozenset(cause for cause in new if state.cost < EXCUSED * without(cause).cost)

@@ -1,0 +1,101 @@
+"""Torque limits that excuse: what they are, what may not come beside them, and the way back up."""
+
+import pytest
+
+from tendon_ros.diagnose.excusing import (
+    excused,
+    excuses,
+    kept_for_others,
+    needs_excuse,
+    raised,
+)
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.motor_gain import motor_gain
+from tendon_ros.identify.starting import Starting
+from tendon_ros.model.instrument_file import load_instrument
+
+CUT = Candidate('torque_saturation', 'motor_axis')
+
+
+@pytest.fixture(scope='module')
+def cut_at(measured_on):
+    """Return a function that makes the problem of an axis whose torque is cut off."""
+    axis = load_instrument('driven_axis')
+    swings = (('duration', '6 s'), ('amplitude', '40 deg'))
+
+    def made(limit):
+        cut = (CUT.effect, CUT.place, {'limit': limit, 'knee': 0.05})
+        return prepared([measured_on(axis, cut, settings=swings)], axis).problem
+
+    return made
+
+
+@pytest.mark.parametrize(('limit', 'sunk'), [(3.0, False), (0.005, True)])
+def test_a_limit_that_nearly_all_torques_pass_is_none(sound_problem, limit, sunk):
+    model = sound_problem.empty
+    model = model.joined(Candidate('torque_gain', 'motor_M'), {'gain': 0.9})
+    model = model.joined(Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01})
+    assert excuses(sound_problem, model, 1) is sunk
+    assert not excuses(sound_problem, model, 0)
+    # whoever joins may bend another one into an excuse
+    model = model.joined(Candidate('coulomb_friction', 'pulley_M'), {'torque': 0.1})
+    limits = {Candidate('torque_saturation', 'motor_M')} if sunk else set()
+    assert excused(sound_problem, model) == limits
+
+
+@pytest.mark.parametrize(('place', 'limit', 'needs'), [
+    ('motor_M', 3.0, False), ('motor_M', 0.005, True), ('motor_L', 0.005, False),
+])  # fmt: skip
+def test_a_gain_beside_a_limit_that_excuses_is_none(sound_problem, place, limit, needs):
+    model = sound_problem.empty.joined(
+        Candidate('torque_saturation', 'motor_M'), {'limit': limit, 'knee': 0.01}
+    )
+    model = model.joined(Candidate('torque_gain', place), {'gain': 5.0})
+    assert needs_excuse(sound_problem, model, 1) is needs
+    assert not needs_excuse(sound_problem, model, 0)
+
+
+def test_a_limit_that_sank_is_raised_to_where_it_excuses_no_more(sound_problem):
+    limit, friction = Candidate('torque_saturation', 'motor_M'), Candidate('gravity', 'pulley_M')
+    model = sound_problem.empty.joined(limit, {'limit': 0.005, 'knee': 0.4})
+    model = model.joined(friction, {'torque': 0.1, 'phase': 0.0})
+    again = raised(sound_problem, model)
+    assert set(again.causes) == {limit, friction}
+    assert not excused(sound_problem, again)
+    assert raised(sound_problem, again) is again
+    gain = motor_gain(sound_problem, again, 'M')
+    usual = sound_problem.rollouts.usual('M', gain)
+    assert usual < again.values(again.causes.index(limit))['limit'] < 1.2 * usual
+
+
+def test_limits_are_looked_for_among_what_the_motor_gives(cut_at):
+    """And not among what it reports, where that is twice or half as much."""
+    problem = cut_at(0.06)
+    gives = Candidate('torque_gain', 'motor_axis')
+
+    def levels(model):
+        state = problem.fitted(model, rounds=0)
+        return [values['limit'] for _, values in Starting(problem, state).of(CUT)]
+
+    known = levels(problem.begun)
+    for gain in (0.5, 2.0):
+        scaled = levels(problem.begun.joined(gives, {'gain': gain}))
+        assert scaled == pytest.approx([gain * level for level in known])
+
+
+@pytest.mark.parametrize(('limit', 'comes'), [(0.06, True), (0.08, False)])
+def test_a_limit_that_sinks_at_once_comes_in_where_nothing_explains_as_much(cut_at, limit, comes):
+    """So much of what the lower one cuts off is more than half, and the way up is found again."""
+    problem = cut_at(limit)
+    start = problem.fitted(problem.begun)
+    sunk = problem.fitted(problem.begun.joined(CUT, {'limit': 0.002, 'knee': 0.3}), rounds=8)
+    assert excuses(problem, sunk.model, 0)
+    assert kept_for_others(problem, sunk, ()) == ({CUT} if comes else set())
+    assert kept_for_others(problem, sunk, [CUT]) == set()
+    state = Steps(problem, [CUT], 1, lambda *_: None).pruned(start, sunk)
+    assert state.model.causes == ((CUT,) if comes else ())
+    if comes:
+        assert state.cost < sunk.cost
+        assert not excuses(problem, state.model, 0)
