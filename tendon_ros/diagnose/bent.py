@@ -40,6 +40,8 @@ SPENT = 1.5
 #: part of the widest knee of a torque limit, or of the bound of an amplitude, from which on it is
 #: as wide as it may be
 WIDE = 0.98
+#: times its inertia that no body has by mistake
+OVER = 10.0
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -164,10 +166,14 @@ def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
     Return whether a factor is nearly at its bound, or an angle or amplitude at it.
 
+    Nobody takes a body for another of ten times its inertia: a motor that lags is told like that.
+
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether.
     """
+    if candidate.effect == 'inertia' and not 1.0 / OVER < values['scale'] < OVER:
+        return True
     return any(_is_at_bound(p, values[p.name]) for p in candidate.parameters if not p.is_shape)
 
 

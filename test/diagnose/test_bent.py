@@ -93,6 +93,10 @@ def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
         ('sensor_delay', 'load_cell', {'time': 0.05}, False),
         ('torque_gain', 'motor_M', {'gain': 0.021}, True),
         ('torque_gain', 'motor_M', {'gain': 1.2}, False),
+        # nobody takes a body for another of ten times its inertia
+        ('inertia', 'pulley_2', {'scale': 17.0}, True),
+        ('inertia', 'pulley_2', {'scale': 0.09}, True),
+        ('inertia', 'pulley_2', {'scale': 9.0}, False),
     ],
 )
 def test_no_size_at_its_bound_tells_what_is_there(effect, place, values, bound):
