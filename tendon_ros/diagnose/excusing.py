@@ -6,16 +6,13 @@ A fit lowers a limit to have ever more excused, until it means nothing.
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.motor_gain import motor_gain
 
-#: part of the cost without it that an excuse may leave which is kept for others: nothing else
-#: explains as much
+#: part of what all others leave that an excuse may leave which comes in
 EXCUSED = 0.1
 #: times what a motor usually gives to which a limit is raised that had sunk below
 ABOVE = 1.05
@@ -89,27 +86,3 @@ def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
     :return: those.
     """
     return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
-
-
-def kept_for_others(
-    problem: Problem, state: Fit, stood: Collection[Candidate]
-) -> frozenset[Candidate]:
-    """
-    Return the excuses among new causes that are kept for what may come beside them.
-
-    Of a motor that hardly ever gives what it reports nothing else can be seen without its limit,
-    and beside less than everything the limit sinks.
-
-    :param problem: the data.
-    :param state: with its derivatives.
-    :param stood: causes that were there before.
-    :return: those of its causes.
-    """
-    known = problem.slopes(state)
-
-    def without(cause: Candidate) -> Fit:
-        model = state.model.without(state.model.causes.index(cause))
-        return problem.fitted(model, known, rounds=6, accuracy=1e-2)
-
-    new = excused(problem, state.model) - set(stood)
-    return frozenset(cause for cause in new if state.cost < EXCUSED * without(cause).cost)

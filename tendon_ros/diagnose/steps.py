@@ -15,7 +15,6 @@ from tendon_ros.diagnose.excusing import (
     EXCUSED,
     excused,
     excuses,
-    kept_for_others,
     needs_excuse,
     raised,
 )
@@ -183,12 +182,14 @@ class Steps:
             for r in self.pool.map(one, chosen)
             if np.isfinite(r.fit.cost)
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
-            and (
-                excused(self.problem, r.fit.model) <= set(state.model.causes)
-                or r.fit.cost < EXCUSED * state.cost
-            )
             and not needs_excuse(self.problem, r.fit.model, len(state.model.causes))
         ]
+        stood = set(state.model.causes)
+        new = [r for r in found if excused(self.problem, r.fit.model) - stood]
+        found = [r for r in found if r not in new]
+        # of a motor that hardly ever gives what it reports, nothing else can be seen before
+        least = min([state.cost, *(r.fit.cost for r in found)])
+        found += [r for r in new if r.fit.cost < EXCUSED * least]
         return sorted(found, key=judged_cost)
 
     def settled(self, model: Model, known: Mapping[str, FloatArray] | None = None) -> Fit:
@@ -213,8 +214,7 @@ class Steps:
         :param stood: those that were there before.
         :return: with those that are worth having.
         """
-        coming = kept_for_others(self.problem, state, stood)
-        state = self.renamed(state, stood, coming)
+        state = self.renamed(state, stood)
         model = self.parted(state)
         if model is not state.model:
             state = self.settled(model, self.problem.slopes(state))
@@ -242,8 +242,7 @@ class Steps:
             elif rough:
                 # carefully only once several have gone; what then is doubtful is asked anew
                 # those that are left came in as causes, and may sink now that others have gone
-                settled = self.settled(state.model)
-                state, rough = self.renamed(settled, state.model.causes, coming), False
+                state, rough = self.renamed(self.settled(state.model), state.model.causes), False
                 checked.clear()
             else:
                 return self.raised(state)
@@ -259,18 +258,12 @@ class Steps:
         fit = state if model is state.model else self.settled(model)
         return min(state, fit, key=lambda one: one.cost)
 
-    def renamed(
-        self,
-        state: Fit,
-        stood: Collection[Candidate] = (),
-        coming: Collection[Candidate] = (),
-    ) -> Fit:
+    def renamed(self, state: Fit, stood: Collection[Candidate] = ()) -> Fit:
         """
         Give causes the names that they deserve, join what is one, and drop what is none.
 
         :param state: with causes that a fit may have bent.
         :param stood: those that were there before: they may sink to excuses.
-        :param coming: excuses that are kept for what may come beside them.
         :return: the same where nothing has another name, else fitted again.
         """
         model = state.model
@@ -278,7 +271,7 @@ class Steps:
         for k in reversed(range(len(model.causes))):
             cause, values = model.causes[k], model.values(k)
             # who sinks is kept for those beside it
-            kept = (cause in stood and len(model.causes) > 1) or cause in coming
+            kept = cause in stood and len(model.causes) > 1
             idle = not kept and excuses(self.problem, model, k)
             if idle or needs_excuse(self.problem, model, k):
                 model = model.without(k)

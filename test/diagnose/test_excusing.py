@@ -1,11 +1,12 @@
 """Torque limits that excuse: what they are, what may not come beside them, and the way back up."""
 
+from dataclasses import replace
+
 import pytest
 
 from tendon_ros.diagnose.excusing import (
     excused,
     excuses,
-    kept_for_others,
     needs_excuse,
     raised,
 )
@@ -13,6 +14,7 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.motor_gain import motor_gain
+from tendon_ros.identify.screening import Screen
 from tendon_ros.identify.starting import Starting
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -85,17 +87,33 @@ def test_limits_are_looked_for_among_what_the_motor_gives(cut_at):
         assert scaled == pytest.approx([gain * level for level in known])
 
 
-@pytest.mark.parametrize(('limit', 'comes'), [(0.06, True), (0.08, False)])
-def test_a_limit_that_sinks_at_once_comes_in_where_nothing_explains_as_much(cut_at, limit, comes):
-    """So much of what the lower one cuts off is more than half, and the way up is found again."""
-    problem = cut_at(limit)
-    start = problem.fitted(problem.begun)
-    sunk = problem.fitted(problem.begun.joined(CUT, {'limit': 0.002, 'knee': 0.3}), rounds=8)
+@pytest.fixture(scope='module')
+def half_cut(cut_at):
+    """Return the problem of an axis of which half of the torques are cut off, and its start."""
+    problem = cut_at(0.06)
+    return problem, problem.fitted(problem.begun)
+
+
+SUNK = {'limit': 0.002, 'knee': 0.3}
+
+
+@pytest.mark.parametrize(('left', 'comes'), [(1.0, True), (0.05, False)])
+def test_a_limit_that_sinks_comes_in_where_nothing_explains_as_much(half_cut, left, comes):
+    problem, start = half_cut
+    steps = Steps(problem, [CUT], 1, lambda *_: None)
+    proposal = steps.screened(Screen(problem, start))[0]
+    sunk = replace(proposal, z=CUT.coordinates.place(SUNK))
+    # what another one would leave, too
+    state = replace(start, cost=left * start.cost)
+    rivals = steps.fitted(state, [sunk], 0.0)
+    assert [r.candidate for r in rivals] == ([CUT] if comes else [])
+    assert all(excuses(problem, r.fit.model, 0) for r in rivals)
+
+
+def test_a_limit_that_sank_finds_its_way_up(half_cut):
+    problem, _ = half_cut
+    sunk = problem.fitted(problem.begun.joined(CUT, SUNK), rounds=8)
     assert excuses(problem, sunk.model, 0)
-    assert kept_for_others(problem, sunk, ()) == ({CUT} if comes else set())
-    assert kept_for_others(problem, sunk, [CUT]) == set()
-    state = Steps(problem, [CUT], 1, lambda *_: None).pruned(start, sunk)
-    assert state.model.causes == ((CUT,) if comes else ())
-    if comes:
-        assert state.cost < sunk.cost
-        assert not excuses(problem, state.model, 0)
+    state = Steps(problem, [CUT], 1, lambda *_: None).raised(sunk)
+    assert state.cost < sunk.cost
+    assert not excuses(problem, state.model, 0)
