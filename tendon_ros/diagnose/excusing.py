@@ -1,7 +1,8 @@
 """
 Torque limits that excuse: nearly all torques pass them, and no motion tells what those were.
 
-A fit lowers a limit to have ever more excused, until it means nothing.
+A fit lowers a limit to have ever more excused, until it means nothing. None comes in like that
+but where all others leave ten times as much.
 """
 
 from __future__ import annotations
@@ -22,8 +23,7 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     """
     Return whether a cause is a torque limit that nearly all torques pass.
 
-    A fit lowers it to have ever more excused, until it means nothing. None may come in like that;
-    one that is there may sink while others join, since it may stand for a motor that gives way
+    One that is there may sink while others join, since it may stand for a motor that gives way
     otherwise than by any limit. It is no cause then, but what joins would not be seen without it.
 
     :param problem: the data.

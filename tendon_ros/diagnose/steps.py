@@ -184,13 +184,23 @@ class Steps:
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
             and not needs_excuse(self.problem, r.fit.model, len(state.model.causes))
         ]
+        return sorted(self._without_excuses(state, found), key=judged_cost)
+
+    def _without_excuses(self, state: Fit, rivals: Sequence[Rival]) -> list[Rival]:
+        """
+        Return the rivals that bring no excuse, and those that leave a part of what all others do.
+
+        Of a motor that hardly ever gives what it reports, nothing else can be seen before.
+        """
         stood = set(state.model.causes)
-        new = [r for r in found if excused(self.problem, r.fit.model) - stood]
-        found = [r for r in found if r not in new]
-        # of a motor that hardly ever gives what it reports, nothing else can be seen before
-        least = min([state.cost, *(r.fit.cost for r in found)])
-        found += [r for r in new if r.fit.cost < EXCUSED * least]
-        return sorted(found, key=judged_cost)
+        brings = [bool(excused(self.problem, r.fit.model) - stood) for r in rivals]
+        sound = [r for r, new in zip(rivals, brings, strict=True) if not new]
+        least = min([state.cost, *(r.fit.cost for r in sound)])
+        return [
+            r
+            for r, new in zip(rivals, brings, strict=True)
+            if not new or r.fit.cost < EXCUSED * least
+        ]
 
     def settled(self, model: Model, known: Mapping[str, FloatArray] | None = None) -> Fit:
         """
