@@ -31,7 +31,7 @@ def asked_again(
     return tuple(
         c
         for c in candidates
-        if c.instants or c.switches or find(c.effect).by_others or (c.effect, c.place) in traced
+        if c.instants or c.switches or c.by_others or (c.effect, c.place) in traced
     )
 
 

@@ -7,10 +7,13 @@ but where all others leave ten times as much.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from tendon_ros.diagnose.found import Rival
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
 
 #: part of what all others leave that an excuse may leave which comes in
@@ -86,3 +89,21 @@ def excused(problem: Problem, model: Model) -> frozenset[Candidate]:
     :return: those.
     """
     return frozenset(cause for k, cause in enumerate(model.causes) if excuses(problem, model, k))
+
+
+def without_excuses(problem: Problem, state: Fit, rivals: Sequence[Rival]) -> list[Rival]:
+    """
+    Return the rivals that bring no excuse, and those that leave a part of what all others do.
+
+    Of a motor that hardly ever gives what it reports, nothing else can be seen before.
+
+    :param problem: the data.
+    :param state: beside which they were fitted.
+    :param rivals: all of them.
+    :return: those, in their order.
+    """
+    stood = set(state.model.causes)
+    brings = [bool(excused(problem, r.fit.model) - stood) for r in rivals]
+    others = [r.fit.cost for r, new in zip(rivals, brings, strict=True) if not new]
+    most = EXCUSED * min([state.cost, *others])
+    return [r for r, new in zip(rivals, brings, strict=True) if not new or r.fit.cost < most]

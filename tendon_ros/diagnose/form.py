@@ -7,6 +7,7 @@ be from machines.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -55,7 +56,17 @@ def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = Tr
     :param resting: as for :func:`form_power`.
     :return: noise power that each sample may keep although the causes are right, shape (samples,).
     """
-    parts = form_parts(problem, start, state, resting=resting)
+    return summed(form_parts(problem, start, state, resting=resting), state)
+
+
+def summed(parts: Sequence[FloatArray], state: Fit) -> FloatArray:
+    """
+    Return what laws may leave together.
+
+    :param parts: of some of the causes of a state, as :func:`form_parts` gives them.
+    :param state: the state.
+    :return: shape (samples,); zeros where there are no parts.
+    """
     return np.sum([np.zeros(len(state.left)), *parts], axis=0)
 
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_parts, form_power, own_power, tie
+from tendon_ros.diagnose.form import form_parts, form_power, own_power, summed, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.further import saved
 from tendon_ros.diagnose.imitable import alike
@@ -120,7 +120,7 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     whole = _signs(problem, found, (without, final), left, parts, similar)
     kept = set(without.model.causes)
     others = [part for cause, part in zip(final.model.causes, parts, strict=True) if cause in kept]
-    quiet = np.sum([np.zeros(len(final.left)), *others], axis=0) < LEAST_IN_ONE
+    quiet = summed(others, final) < LEAST_IN_ONE
     if not MOSTLY < np.mean(quiet) < 1.0:
         return whole
     apart = _signs(

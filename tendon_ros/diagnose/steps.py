@@ -11,13 +11,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import at_once, biased, degenerate
 from tendon_ros.diagnose.clock import told_apart
-from tendon_ros.diagnose.excusing import (
-    EXCUSED,
-    excused,
-    excuses,
-    needs_excuse,
-    raised,
-)
+from tendon_ros.diagnose.excusing import excuses, needs_excuse, raised, without_excuses
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.patience import Patience
@@ -184,23 +178,7 @@ class Steps:
             and not degenerate(self.problem, r.candidate, r.fit.model.values(-1))
             and not needs_excuse(self.problem, r.fit.model, len(state.model.causes))
         ]
-        return sorted(self._without_excuses(state, found), key=judged_cost)
-
-    def _without_excuses(self, state: Fit, rivals: Sequence[Rival]) -> list[Rival]:
-        """
-        Return the rivals that bring no excuse, and those that leave a part of what all others do.
-
-        Of a motor that hardly ever gives what it reports, nothing else can be seen before.
-        """
-        stood = set(state.model.causes)
-        brings = [bool(excused(self.problem, r.fit.model) - stood) for r in rivals]
-        sound = [r for r, new in zip(rivals, brings, strict=True) if not new]
-        least = min([state.cost, *(r.fit.cost for r in sound)])
-        return [
-            r
-            for r, new in zip(rivals, brings, strict=True)
-            if not new or r.fit.cost < EXCUSED * least
-        ]
+        return sorted(without_excuses(self.problem, state, found), key=judged_cost)
 
     def settled(self, model: Model, known: Mapping[str, FloatArray] | None = None) -> Fit:
         """

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.form import form_parts, form_power, own_power
+from tendon_ros.diagnose.form import form_parts, form_power, own_power, summed
 from tendon_ros.diagnose.imitable import imitable
 from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.undoing import undoing
@@ -65,7 +65,7 @@ def worthwhile(problem: Problem, start: Fit, before: Fit, after: Fit) -> bool:
     if gain <= least * LEAST and in_one <= least * LEAST_IN_ONE:
         return False
     parts = form_parts(problem, start, before)
-    profile = np.sum([np.zeros(len(before.left)), *parts], axis=0)
+    profile = summed(parts, before)
     own = own_power(problem, start)
     form = own + float(np.mean(profile))
     if eager:  # what laws get wrong is not at one time, and nor is what has no law

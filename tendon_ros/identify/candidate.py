@@ -101,6 +101,11 @@ class Candidate:
         return find(self.effect).dry
 
     @property
+    def by_others(self) -> bool:
+        """Whether what it does grows with what others do."""
+        return find(self.effect).by_others
+
+    @property
     def waves(self) -> bool:
         """Whether it comes again with every part of a turn."""
         return any(p.search == 'cycles' for p in self.parameters)

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.effects import find
 from tendon_ros.identify.beside import Beside
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem
@@ -173,8 +172,7 @@ class Screen:
         """Return the signature of a first look, perhaps as it was beside another state."""
         if proposal.candidate.instants:  # as large as what is left here says
             return self._changes(proposal, at)
-        by_others = find(proposal.candidate.effect).by_others
-        beside = self._causes if by_others else self._signs
+        beside = self._causes if proposal.candidate.by_others else self._signs
         key = (proposal.candidate, proposal.z, beside)
         if key not in self._seen:
             found = self._changes(proposal, at)
