@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
+from tendon_ros.identify.beginning import Beginning
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.means import averaged
 from tendon_ros.identify.segment import Segment
@@ -77,6 +78,7 @@ class Rollouts:
             along(base, segment.prescribed, segment.pushed, self.tolerance)
             for base, segment in zip(self._base, self.segments, strict=True)
         )
+        self._beginning = tuple(map(Beginning, self._base, self.segments))
         largest = 8 * max([1, *(len(s.measured) * len(s.time) for s in self.segments)])
         self._one = lru_cache(max(1, int(REMEMBERED / largest)))(self._computed)
         self._columns = tuple(
@@ -196,7 +198,14 @@ class Rollouts:
         effects = _sooner(in_force(base.effects, uses), late, of)
         arrays = self._layout[n].arrays(tuple(effects))
         motion = true_motion(base, arrays.numbers, segment, late)
-        rows = follow(base, arrays, motion, len(segment.time) - 1, pose=segment.pose)
+        rows = follow(
+            base,
+            arrays,
+            motion,
+            len(segment.time) - 1,
+            pose=self._beginning[n].pose(motion),
+            resting=self._beginning[n].resting,
+        )
         return rows, arrays.numbers
 
     def _computed(self, n: int, uses: tuple[EffectUse, ...]) -> tuple[FloatArray, int]:

@@ -185,6 +185,21 @@ class Runner:
         table = np.array(row, dtype=np.float64).reshape(1, -1)
         return Rows(self.instrument, at, table, self._tried - before)
 
+    def settle(self, seconds: float, signals: Signals) -> int:
+        """
+        Let the mechanics come to rest before the clock strikes zero, where :meth:`rest` put it.
+
+        :param seconds: how long before [s].
+        :param signals: what drives meanwhile, held.
+        :return: the steps that it took.
+        :raises SimulationError: where it diverges.
+        """
+        at = self.structure
+        self._carried[at['CLOCK']] = -seconds
+        steps = self.glide(0.0, signals).steps
+        self._carried[at['STEP']] = 0.1 * self.instrument.control_period
+        return steps
+
     def place(self, angle: FloatArray, velocity: FloatArray) -> None:
         """
         Put the pulleys somewhere, memories unchanged.

@@ -265,6 +265,7 @@ def follow(
     every: int = 1,
     engine: str = 'auto',
     pose: Mapping[str, float] | None = None,
+    resting: float = 0.0,
 ) -> Rows:
     """
     Drive a model whose arrays are there already, from :func:`along`, as :func:`predict` does.
@@ -276,8 +277,12 @@ def follow(
     :param every: record every so many ticks.
     :param engine: as for :class:`Simulation`.
     :param pose: as for :func:`predict`.
+    :param resting: how long the signals had been where they begin [s]: what the effects in force
+        make of the pose has happened by then.
     :return: rows.
     """
     runner = Runner(instrument, arrays, engine)
     runner.rest(pose or {})
-    return runner.advance(np.zeros(0), ticks, every=every, smoothly=True, signals=motion)
+    before = runner.settle(resting, Signals.held(motion.value[:, 0])) if resting > 0.0 else 0
+    rows = runner.advance(np.zeros(0), ticks, every=every, smoothly=True, signals=motion)
+    return replace(rows, steps=before + rows.steps)

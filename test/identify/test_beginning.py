@@ -1,0 +1,73 @@
+"""The model begins at rest, and where the motors truly are."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.beginning import Beginning
+from tendon_ros.identify.segment import SETTLING
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
+
+
+@pytest.fixture(scope='module')
+def free(sound_problem):
+    """Return rollouts of a recording with nothing to touch, in which all may turn at will."""
+    rollouts = sound_problem.rollouts
+    return rollouts.like([replace(s, contacts=()) for s in rollouts.segments])
+
+
+def angles(rollouts, effect, place, **parameters):
+    """Return what the pulleys do with an effect, shape (bins, pulleys), [rad]."""
+    return rollouts.states([[EffectUse(effect, place, parameters)]])[0].angle
+
+
+@pytest.mark.parametrize('motor', ['M', 'L'])
+def test_what_hangs_on_a_motor_begins_where_the_motor_truly_is(free, motor):
+    sound = free.states([[]])[0].angle
+    moved = angles(free, 'encoder_offset', f'encoder_{motor}', angle=-0.02) - sound
+    assert abs(moved[:, free.instrument.index(motor)] - 0.02).max() < 1e-6
+    # a shift of the whole rig stretches nothing, at the beginning as later
+    assert abs(moved - moved[-1]).max() < 1e-5
+
+
+def test_a_weight_has_stretched_its_cables_before_the_recording_begins(free):
+    at = free.instrument.index('3')
+    hung = angles(free, 'gravity', 'pulley_3', torque=0.4, phase=np.pi / 2)
+    sound = free.states([[]])[0].angle
+    first = (hung - sound)[:10, at]
+    assert abs(first).min() > 0.01
+    assert np.ptp(first) < 0.05 * abs(first).max()
+
+
+def test_friction_holds_nothing_where_it_never_was(free):
+    rubs = EffectUse('coulomb_friction', 'pulley_3', {'torque': 0.2})
+    off = EffectUse('encoder_offset', 'encoder_L', {'angle': -0.02})
+    [with_both], [with_friction] = free.states([[rubs, off]]), free.states([[rubs]])
+    moved = with_both.angle - with_friction.angle
+    bins = free.segments[0].time > SETTLING
+    at = free.instrument.index('3')
+    assert np.ptp(moved[bins, at]) < 1e-3
+
+
+def test_what_plays_or_hangs_slack_goes_along_too(bench, sound_problem):
+    [segment] = sound_problem.rollouts.segments
+    loose = replace(
+        bench, loops=tuple(replace(loop, pretension=0.0) for loop in bench.loops)
+    )
+    tight, slack = (Beginning(one, segment) for one in (bench, loose))
+    shift = replace(segment.motion, value=segment.motion.value + np.array([[0.01], [0.0]]))
+    for begun in (tight, slack):
+        moved = begun.pose(shift)
+        assert moved['2'] - segment.pose['2'] == pytest.approx(0.01, rel=1e-3)
+        assert moved['3'] - segment.pose['3'] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_model_that_torques_drive_comes_to_no_rest(measured_on):
+    body = load_instrument('single_body')
+    [along] = prepared([measured_on(body)], body).problem.rollouts.segments
+    assert Beginning(body, along).resting > 0.0
+    driven = replace(along, prescribed=(), pushed=along.prescribed)
+    assert Beginning(body, driven).resting == 0.0
