@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.identify.beginning import Beginning
 from tendon_ros.identify.candidate import Candidate, Values
 from tendon_ros.identify.driving import Drive, motions_first
 from tendon_ros.identify.effort import Effort
@@ -202,7 +203,7 @@ class Trial:
             motion=driven_by(self._driving, 0.0, period, known),
             measured=(),
             contacts=tuple(c.name for c in self._base.contacts if c.enabled),
-            pose={},
+            pose=dict.fromkeys(self._base.inner, 0.0),
         )
         return _Drive(segment, reported)
 
@@ -228,7 +229,15 @@ class Trial:
         layout = along(instrument, segment.prescribed, segment.pushed, ACCURACY)
         arrays = layout.arrays(effects)
         motion = true_motion(instrument, arrays.numbers, segment)
-        rows = follow(instrument, arrays, motion, len(segment.time) - 1)
+        begun = Beginning(instrument, segment)
+        rows = follow(
+            instrument,
+            arrays,
+            motion,
+            len(segment.time) - 1,
+            pose=begun.pose(motion),
+            resting=begun.resting,
+        )
         self._effort.spend(rows.steps, len(segment.time))
         found = np.array([s.reading(rows) for s in self._sensed])
         _add_cut_off(found, self._sensed, instrument, arrays.numbers, drive.reported)
