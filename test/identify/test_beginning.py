@@ -54,9 +54,7 @@ def test_friction_holds_nothing_where_it_never_was(free):
 
 def test_what_plays_or_hangs_slack_goes_along_too(bench, sound_problem):
     [segment] = sound_problem.rollouts.segments
-    loose = replace(
-        bench, loops=tuple(replace(loop, pretension=0.0) for loop in bench.loops)
-    )
+    loose = replace(bench, loops=tuple(replace(loop, pretension=0.0) for loop in bench.loops))
     tight, slack = (Beginning(one, segment) for one in (bench, loose))
     shift = replace(segment.motion, value=segment.motion.value + np.array([[0.01], [0.0]]))
     for begun in (tight, slack):

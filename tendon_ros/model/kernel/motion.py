@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
+from tendon_ros.model.kernel.events import AT_ONCE, begin, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
 from tendon_ros.model.kernel.linear import hold, linearise, outer
 from tendon_ros.model.kernel.loops import clipped
@@ -16,6 +16,7 @@ from tendon_ros.model.kernel.structure import (
 )  # fmt: skip
 
 LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
+SHORTEST = 1e-8  # [s] of steps that are taken again since something seems to stop at once
 MOST_STEPS = 200_000  # between two ticks
 DONE, DIVERGED = 0, 1
 
@@ -33,6 +34,16 @@ def longest(d: Ints, g: Ints, s: Floats) -> float:
         if d[DRY + i] == 1 and g[MODE + i] == 0:
             return LONGEST_STUCK
     return LONGEST
+
+
+def gathers(w: Floats, g: Ints, index: int) -> bool:
+    """
+    Return whether a pulley gathers speed where a step begins, and so cannot stop there.
+
+    Over something stiff the dense output of a step bends the wrong way at its very beginning.
+    Believed, a pulley that lets go would stop at once, let go again, and creep on like that.
+    """
+    return g[MODE + index] * w[FIRST + N + index] > 0.0
 
 
 def take_up(m: Floats, w: Floats, c: Floats) -> None:
@@ -90,6 +101,12 @@ def advance(
             g[COUNT] += 1
             evaluate(m, d, w, g, s, c, t + h, NEXT)
             part, kind, index = crossing(m, d, w, g, s, c, t, h)
+            while kind == SLIDE and part <= AT_ONCE and h > SHORTEST and gathers(w, g, index):
+                h *= 0.1
+                g[COUNT + 1] += 1
+                step(m, d, w, g, s, c, t, h)
+                evaluate(m, d, w, g, s, c, t + h, NEXT)
+                part, kind, index = crossing(m, d, w, g, s, c, t, h)
             if part < 2.0:
                 h *= part
                 step(m, d, w, g, s, c, t, h)
