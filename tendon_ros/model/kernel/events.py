@@ -16,7 +16,6 @@ from tendon_ros.model.kernel.structure import (
 )  # fmt: skip
 
 SLIDE, STICK, MEET, SLACKEN = 0, 1, 2, 3  # kinds of events
-AT_ONCE = 1e-6  # part of a step before which no event is looked for
 #: friction holds a little more than its budget: a pulley that has come to rest where the two are
 #: equal must not be let go, and caught again, by rounding
 GRIP = 1.0 + 1e-9
@@ -74,7 +73,7 @@ def locate(
     kind: int, index: int, last: float,
 ) -> float:  # fmt: skip
     """Return the part of the step just taken at which an event happens: Illinois."""
-    low = AT_ONCE
+    low = 1e-6
     between(d, w, low, TRIAL)
     prescribe(m, d, w, s, t + low * h, TRIAL)
     evaluate(m, d, w, g, s, c, t + low * h, TRIAL)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from tendon_ros.model.kernel.events import AT_ONCE, begin, change, crossing, SLIDE, state_at
+from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
 from tendon_ros.model.kernel.linear import hold, linearise, outer
 from tendon_ros.model.kernel.loops import clipped
@@ -16,7 +16,7 @@ from tendon_ros.model.kernel.structure import (
 )  # fmt: skip
 
 LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
-SHORTEST = 1e-8  # [s] of steps that are taken again since something seems to stop at once
+SHORTEST = 1e-8  # [s] of steps that are taken again since they end in a stop that is none
 MOST_STEPS = 200_000  # between two ticks
 DONE, DIVERGED = 0, 1
 
@@ -38,12 +38,12 @@ def longest(d: Ints, g: Ints, s: Floats) -> float:
 
 def gathers(w: Floats, g: Ints, index: int) -> bool:
     """
-    Return whether a pulley gathers speed where a step begins, and so cannot stop there.
+    Return whether a pulley gathers speed at the end of a step, and so does not stop there.
 
-    Over something stiff the dense output of a step bends the wrong way at its very beginning.
-    Believed, a pulley that lets go would stop at once, let go again, and creep on like that.
+    Over something stiff the dense output of a step bends the wrong way where the step begins.
+    Believed, a pulley that was let go would stop at once, be let go again, and creep on like that.
     """
-    return g[MODE + index] * w[FIRST + N + index] > 0.0
+    return g[MODE + index] * w[F + N + index] > 0.0
 
 
 def take_up(m: Floats, w: Floats, c: Floats) -> None:
@@ -101,13 +101,8 @@ def advance(
             g[COUNT] += 1
             evaluate(m, d, w, g, s, c, t + h, NEXT)
             part, kind, index = crossing(m, d, w, g, s, c, t, h)
-            while kind == SLIDE and part <= AT_ONCE and h > SHORTEST and gathers(w, g, index):
-                h *= 0.1
-                g[COUNT + 1] += 1
-                step(m, d, w, g, s, c, t, h)
-                evaluate(m, d, w, g, s, c, t + h, NEXT)
-                part, kind, index = crossing(m, d, w, g, s, c, t, h)
-            if part < 2.0:
+            while part < 2.0:
+                long = h
                 h *= part
                 step(m, d, w, g, s, c, t, h)
                 evaluate(m, d, w, g, s, c, t + h, NEXT)
@@ -118,6 +113,13 @@ def advance(
                         h -= miss / pace
                         step(m, d, w, g, s, c, t, h)
                         evaluate(m, d, w, g, s, c, t + h, NEXT)
+                if kind != SLIDE or long < SHORTEST or not gathers(w, g, index):
+                    break
+                h = 0.1 * long
+                g[COUNT + 1] += 1
+                step(m, d, w, g, s, c, t, h)
+                evaluate(m, d, w, g, s, c, t + h, NEXT)
+                part, kind, index = crossing(m, d, w, g, s, c, t, h)
             if smoothly == 1:
                 report(m, d, w, g, s, c, t, h, noise, rows, every)
             t = t + h if h < whole or part < 2.0 else stop
