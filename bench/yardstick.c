@@ -509,8 +509,8 @@ static int advance(const Rig *r, const double *table, Work *w, double *clock, do
         evaluate(r, table, w, t + h, w->next);
         int kind = -1, index = -1;
         double part = crossing(r, table, w, t, h, &kind, &index);
-        if (part < 2.0) {
-            w->events++;
+        while (part < 2.0) {
+            double whole_step = h;
             h *= part;
             step(r, table, w, t, h);
             evaluate(r, table, w, t + h, w->next);
@@ -522,7 +522,15 @@ static int advance(const Rig *r, const double *table, Work *w, double *clock, do
                     evaluate(r, table, w, t + h, w->next);
                 }
             }
+            // a pulley that gathers speed does not stop
+            if (kind != SLIDE || whole_step < 1e-8 || !(w->mode[index] * w->f[N + index] > 0.0))
+                break;
+            h = 0.1 * whole_step;
+            step(r, table, w, t, h);
+            evaluate(r, table, w, t + h, w->next);
+            part = crossing(r, table, w, t, h, &kind, &index);
         }
+        w->events += part < 2.0;
         if (rows) {
             double at = (*tick + 1) * r->period;
             int looked = 0;
