@@ -21,7 +21,6 @@ import numpy as np
 from scipy.optimize import minimize
 
 from bench.development import development, development_seed
-from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import PATTERN, STRATA
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.diagnose.signs import Signs
@@ -68,7 +67,6 @@ def main() -> None:
     parser.add_argument('--cases', type=int, default=len(PATTERN), help='of each seed')
     parser.add_argument('--strata', nargs='+', default=PATTERN, choices=STRATA)
     args = parser.parse_args()
-    use_one_thread()
     path, strata = args.kept, tuple(args.strata)
     kept = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
     known = {(k['seed'], k['index'], k['stratum']) for k in kept}

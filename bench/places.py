@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 
 from bench.development import development, development_seed
-from tendon_ros.base.threads import use_one_thread
 from tendon_ros.blind.case import Case
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.places import Places
@@ -36,7 +35,6 @@ def main() -> None:
     parser.add_argument('--seeds', nargs='+', type=development_seed, required=True)
     parser.add_argument('--cases', type=int, default=30, help='of each seed')
     args = parser.parse_args()
-    use_one_thread()
     cases = [(seed, index) for seed in args.seeds for index in range(args.cases)]
     first = among = 0
     for seed, index in cases:
