@@ -132,8 +132,8 @@ def _compared(
 
 def _posed(instrument: Instrument, segment: Segment) -> Segment:
     """Return a segment with the pose in which the model rests before the motion begins."""
-    if set(segment.pushed) & set(instrument.driven):
-        return segment  # a known torque leads to no rest
+    if not segment.begins_at_rest(instrument):
+        return segment
     first = segment.motion.value[:, 0]
     resting = replace(
         segment,

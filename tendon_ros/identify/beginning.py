@@ -41,9 +41,8 @@ class Beginning:
 
     @property
     def resting(self) -> float:
-        """For how long the model may come to rest before [s]; a known torque leads to no rest."""
-        known = set(self._segment.pushed) & set(self._instrument.driven)
-        return 0.0 if known else RESTING
+        """For how long the model may come to rest before [s]."""
+        return RESTING if self._segment.begins_at_rest(self._instrument) else 0.0
 
     def pose(self, motion: Signals) -> Mapping[str, float]:
         """

@@ -105,6 +105,15 @@ class Segment:
         """Time between values [s]: where torques come seldom, some bins have none."""
         return self.period if self.prescribed else max(self.period, self.sampling)
 
+    def begins_at_rest(self, instrument: Instrument) -> bool:
+        """
+        Return whether a model may come to rest where the motion begins; no known torque lets it.
+
+        :param instrument: the network.
+        :return: whether.
+        """
+        return not set(self.pushed) & set(instrument.driven)
+
     def at_rest(self, instrument: Instrument) -> Iterator[tuple[int, int, BoolArray]]:
         """
         Yield the torques of motors whose motion drives the model, and where each of them rests.
