@@ -1,6 +1,7 @@
 """Fixtures that several folders of tests share."""
 
 from dataclasses import replace
+import math
 from pathlib import Path
 
 from hypothesis import HealthCheck, settings
@@ -13,6 +14,7 @@ use_one_thread()  # as all programs do; pytest runs a process on every core
 # these import numpy, which reads then how many threads it may use
 from tendon_ros.bags.importing import import_runs  # noqa: E402
 from tendon_ros.bags.mapping import load_mapping  # noqa: E402
+from tendon_ros.base.recording import Channel  # noqa: E402
 from tendon_ros.base.resources import config_path  # noqa: E402
 from tendon_ros.diagnose.prepare import prepared  # noqa: E402
 from tendon_ros.identify.driving import as_recorded  # noqa: E402
@@ -102,14 +104,27 @@ def measured_on():
 
 @pytest.fixture(scope='session')
 def by_voltage():
-    """Return the table of a belt of which voltage and speed are known."""
-    return BY_VOLTAGE
+    """Return a function that gives the recording of a belt by voltage, or its beginning."""
+    [run] = import_runs(BY_VOLTAGE, load_mapping(config_path('imports/belt_by_voltage.yaml')))
+    return lambda until=math.inf: run.with_channels(
+        Channel(c.name, c.time[c.time < until], c.value[c.time < until])
+        for c in run.channels.values()
+    )
 
 
 @pytest.fixture(scope='session')
-def far_off_belt():
-    """Return the recording of a belt of which voltage and speed are known, and a file far off."""
-    [run] = import_runs(BY_VOLTAGE, load_mapping(config_path('imports/belt_by_voltage.yaml')))
+def far_off_belt(by_voltage):
+    """Return the first half with a file that is far off, as a problem."""
+    return _far_off(by_voltage(10.0))
+
+
+@pytest.fixture(scope='session')
+def far_off_whole_belt(by_voltage):
+    """Return all of it with a file that is far off, as a problem."""
+    return _far_off(by_voltage())
+
+
+def _far_off(run):
     belt = as_recorded(load_instrument('belt_by_voltage'), set(run.channels))
     soft = tuple(
         Curve(c.name, c.elongation, tuple(SOFT * t for t in c.tension)) for c in belt.curves

@@ -5,9 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.bags.importing import import_runs
-from tendon_ros.bags.mapping import load_mapping
-from tendon_ros.base.resources import config_path
 from tendon_ros.diagnose.alike import leaning
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.afar import kinds_of
@@ -21,7 +18,7 @@ SOFT = 0.15  # times the stiffness that the tutorial guesses
 
 @pytest.fixture(scope='module')
 def ready(by_voltage):
-    [run] = import_runs(by_voltage, load_mapping(config_path('imports/belt_by_voltage.yaml')))
+    run = by_voltage(10.0)
     belt = as_recorded(load_instrument('belt_by_voltage'), set(run.channels))
     curves = tuple(
         Curve(c.name, tuple(x / SOFT for x in c.elongation), c.tension) for c in belt.curves

@@ -113,9 +113,9 @@ def test_of_causes_that_undo_each_other_one_goes_first(measured_on):
     assert len(kept.model.causes) == 2
 
 
-def test_what_torque_drives_is_begun_from_afar(far_off_belt):
+def test_what_torque_drives_is_begun_from_afar(far_off_whole_belt):
     """The file has the belt ten times too soft and motors that are three times too heavy."""
-    problem = far_off_belt
+    problem = far_off_whole_belt
     belt = problem.rollouts.instrument
     candidates = everyone(belt, [s.channel for s in belt.sensors])
     sign = Candidate('sensor_rectified', 'speed_roller')

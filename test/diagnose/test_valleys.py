@@ -25,7 +25,8 @@ VALLEY = {
 def test_guesses_get_out_of_a_valley_in_which_one_cable_is_soft_for_another():
     case = made(1075, 1, Settings(bench='guessed'))
     assert case.label['stratum'] == 'none'
-    problem = prepared(list(case.recordings.values()), case.instrument).problem
+    # one recording is enough: the valley is as deep in each
+    problem = prepared([case.recordings['mixed']], case.instrument).problem
     moved = [
         t.axis.place(VALLEY[name]) if (name := f'{t.place}.{t.quantity}') in VALLEY else 0.0
         for t in problem.tolerances

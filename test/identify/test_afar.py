@@ -54,7 +54,7 @@ def test_bodies_behind_cables_are_found_from_afar_alone():
     # every inertia, damping, stiffness and preload is up to two times off
     case = made(608, 1, Settings(bench='guessed', channels=('force',)))
     assert case.label['stratum'] == 'none'
-    problem = prepared(list(case.recordings.values()), case.instrument).problem
+    problem = prepared([case.recordings['mixed']], case.instrument).problem
     nearby = problem.fitted(problem.empty, rounds=20, accuracy=1e-3)
     begun = [problem.fitted(m, rounds=20, accuracy=1e-3) for m in afar(problem, problem.empty)]
     assert power(problem, nearby) > 2.0
