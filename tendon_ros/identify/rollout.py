@@ -10,11 +10,13 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cached_property, lru_cache
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
+from tendon_ros.effects import find
 from tendon_ros.identify.beginning import Beginning
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.means import averaged
@@ -32,6 +34,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 WHOLE = 1e-6  # part of a bin that no delay is told by
+LONGEST = next(p.high for p in find('sensor_delay').parameters if p.name == 'time')  # [s]
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
 REMEMBERED = 3e7
@@ -245,8 +248,10 @@ class Rollouts:
         """
         period = self.segments[n].period
         found: dict[float, list[int]] = {}
+        # what stays of a delay is one of the catalogue: the nearest bin may be beyond the longest
+        longest = math.floor(LONGEST / period)
         for row, late in enumerate(numbers['sensor_delay'][self._columns[n]].tolist()):
-            part = late - period * round(late / period)
+            part = late - period * min(round(late / period), longest)
             # a whole number of bins is one to within its last digits
             if abs(part) > WHOLE * period:
                 found.setdefault(part, []).append(row)

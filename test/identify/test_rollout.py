@@ -9,6 +9,8 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.residuals import FEW
+from tendon_ros.identify.rollout import LONGEST, Rollouts
+from tendon_ros.identify.segment import segment_of
 from tendon_ros.identify.step_size import ROUGHER
 from tendon_ros.identify.true_motion import true_motion
 from tendon_ros.identify.untold import usual_part
@@ -215,6 +217,15 @@ def test_a_delay_takes_no_noise_away(stopping, measured_on, late):
     grid = segment.period * np.arange(len(plain))
     expected = np.interp(grid + late * segment.period, grid, segment.motion.value[0])
     assert plain[middle] == pytest.approx(expected[middle], abs=1e-3)
+
+
+def test_the_longest_delay_can_be_told_with_any_bins(stopping, measured_on):
+    """Where the nearest bin is beyond it, what stays of it would be no delay that there is."""
+    body, _ = stopping
+    segment = segment_of(body, measured_on(body), 0.28 * LONGEST)
+    use = EffectUse('sensor_delay', 'torque_body', {'time': LONGEST})
+    [[row]] = Rollouts(body, [segment]).predicted([[use]])
+    assert np.isfinite(row).all()
 
 
 @pytest.mark.parametrize('late', [0.5, 1.0, 2.3])
