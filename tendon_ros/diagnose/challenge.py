@@ -15,7 +15,7 @@ from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.left_out import left_out, sets_the_unit
-from tendon_ros.diagnose.one_body import divide, merge
+from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
 from tendon_ros.diagnose.rivals import (
@@ -119,7 +119,8 @@ class Challenge:
             stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
         changed |= self._converged(found)
         causes = found.final.model.causes
-        found.rivals = [stood[c][1] for c in causes]
+        others = {} if brief or self._steps.patience.over else instead(self._steps, found.final)
+        found.rivals = [[*stood[c][1], *others.get(c, [])] for c in causes]
         found.without = [
             self._without(found, k) if changed else stood[c][0] for k, c in enumerate(causes)
         ]

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 from tendon_ros.base.errors import TendonError
 from tendon_ros.diagnose.belief import Belief
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.result import NextExperiment
 from tendon_ros.diagnose.steps import Report
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.excitation import separating, Suggestion, together
-from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.model.effect_use import in_force
 from tendon_ros.model.instrument import Instrument
 
@@ -103,7 +103,7 @@ def _rivals(problem: Problem, found: Found, held: Belief) -> list[Question]:
     model = found.final.model
     questions: list[Question] = []
     for k, cause in enumerate(model.causes):
-        rivals = equals(problem, found, k)[:PAIRS]
+        rivals = [r for r in equals(problem, found, k) if _alone(r, cause, found.final)][:PAIRS]
         if rivals:
             own: Sized = cause, model.values(k)
             pairs: list[tuple[Sized, Sized]] = [
@@ -111,6 +111,12 @@ def _rivals(problem: Problem, found: Found, held: Belief) -> list[Question]:
             ]
             questions.append((held.weighed[k].chance, {k}, pairs))
     return questions
+
+
+def _alone(rival: Rival, cause: Candidate, state: Fit) -> bool:
+    """Return whether a rival takes the place of one cause, and takes it alone."""
+    before, after = set(state.model.causes), set(rival.fit.model.causes)
+    return before - after == {cause} and after - before == {rival.candidate}
 
 
 def _members(found: Found, held: Belief) -> list[Question]:

@@ -10,11 +10,14 @@ from itertools import combinations
 import math
 
 from tendon_ros.diagnose.bodies import of_one_body
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import as_good
 from tendon_ros.diagnose.rivals import BETTER, CLOSE, CREEPING, sharpened
 from tendon_ros.diagnose.steps import best_of, Steps
 from tendon_ros.effects import find
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen
 
 
@@ -63,28 +66,89 @@ def divide(steps: Steps, found: Found) -> bool:
     :return: whether it was.
     """
     problem = steps.problem
-    instrument = problem.rollouts.instrument
     divided = False
     for cause in found.final.model.causes:
         state = found.final
-        causes = state.model.causes
-        together = find(cause.effect).alike
-        if together is None or cause.given:
+        parts = _parts(steps, state, cause)
+        if parts is None:
             continue
-        sizes = together(**state.model.values(causes.index(cause)))
-        parts = [
-            c
-            for c in steps.candidates
-            if c.effect in sizes and c not in causes and of_one_body(instrument, cause, c)
-        ]
-        if len(parts) != len(sizes):
-            continue
-        model = state.model.without(causes.index(cause))
-        for part in parts:
-            [parameter] = part.parameters
-            model = model.joined(part, {parameter.name: sizes[part.effect]})
-        two = problem.fitted(model, problem.slopes(state), CREEPING, 1e-3)
+        two = problem.fitted(parts, problem.slopes(state), CREEPING, 1e-3)
         if two.cost < BETTER * state.cost:
             found.states[-1] = two
             divided = True
     return divided
+
+
+def _parts(steps: Steps, state: Fit, cause: Candidate) -> Model | None:
+    """Return a state's model with what together does the same as a cause, last, in its place."""
+    causes = state.model.causes
+    together = find(cause.effect).alike
+    if together is None or cause.given:
+        return None
+    sizes = together(**state.model.values(causes.index(cause)))
+    parts = [
+        c
+        for c in steps.candidates
+        if c.effect in sizes
+        and c not in causes
+        and of_one_body(steps.problem.rollouts.instrument, cause, c)
+    ]
+    if len(parts) != len(sizes):
+        return None
+    model = state.model.without(causes.index(cause))
+    for part in parts:
+        [parameter] = part.parameters
+        model = model.joined(part, {parameter.name: sizes[part.effect]})
+    return model
+
+
+def _whole(steps: Steps, state: Fit, one: Candidate, two: Candidate) -> Model | None:
+    """Return a state's model with what does the same as two causes, last, in their place."""
+    causes = state.model.causes
+    instrument = steps.problem.rollouts.instrument
+    for whole in steps.candidates:
+        effect = find(whole.effect)
+        if effect.alike is None or whole in causes or not of_one_body(instrument, one, whole):
+            continue
+        if set(effect.alike(**effect.typical)) != {one.effect, two.effect}:
+            continue
+        values = dict(effect.typical)
+        for part in (one, two):
+            [size] = state.model.values(causes.index(part)).values()
+            values |= dict.fromkeys(effect.holds.get(part.effect, ()), size)
+        rest = state.model.without(causes.index(one), causes.index(two))
+        return rest.joined(whole, values)
+    return None
+
+
+def instead(steps: Steps, state: Fit) -> dict[Candidate, list[Rival]]:
+    """
+    Fit one effect in the place of two on one body, and two in the place of one.
+
+    While a body moves, friction that differs by direction is Coulomb friction and a bias of its
+    motor, and nobody can tell unless it turns often enough.
+
+    :param steps: of the search.
+    :param state: with all causes.
+    :return: of each cause that has such, those that take its place: the one of both, or each of
+        the two beside the other.
+    """
+    problem = steps.problem
+    found: dict[Candidate, list[Rival]] = {}
+
+    def fitted(model: Model) -> Fit:
+        return problem.fitted(model, problem.slopes(state), CREEPING, 1e-3)
+
+    for cause in state.model.causes:
+        if (model := _parts(steps, state, cause)) is not None:
+            fit = fitted(model)
+            new = [c for c in fit.model.causes if c not in state.model.causes]
+            found[cause] = [Rival(c, fit) for c in new]
+    for one, two in combinations(state.model.causes, 2):
+        if not of_one_body(problem.rollouts.instrument, one, two):
+            continue
+        if (model := _whole(steps, state, one, two)) is not None:
+            rival = Rival(model.causes[-1], fitted(model))
+            for part in (one, two):
+                found.setdefault(part, []).append(rival)
+    return found

@@ -27,6 +27,7 @@ from tendon_ros.report.diagnosis_figures import (
     where_map,
     worth_bars,
 )
+from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
     CLEARLY,
@@ -37,7 +38,6 @@ from tendon_ros.report.diagnosis_verdict import (
     overall,
     rest_words,
     sizes,
-    together,
     UNIT,
     where_words,
     worth,
@@ -215,7 +215,7 @@ def _card(diagnosis: Diagnosis, cause: Cause) -> Card:
     same = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
     if same:
         blocks.append(Prose(f'These channels cannot tell it from {joined(same)}.'))
-    if both := together(cause):
+    if both := together(diagnosis, cause):
         blocks.append(Prose(f'{both[:1].upper()}{both[1:]}.'))
     return Card(effect_words(cause.effect, cause.place), percent(cause.probability), tuple(blocks))
 

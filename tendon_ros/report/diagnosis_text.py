@@ -8,6 +8,7 @@ from textwrap import wrap
 
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
+from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
     by_place,
@@ -16,7 +17,6 @@ from tendon_ros.report.diagnosis_verdict import (
     LIKELY,
     rest_words,
     sizes,
-    together,
     worth,
 )
 from tendon_ros.report.diagnosis_words import (
@@ -102,7 +102,7 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
     others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
     if others:
         yield f'  these channels cannot tell it from {", ".join(others)}'
-    if same := together(cause):
+    if same := together(diagnosis, cause):
         yield f'  {same}'
     channel, text = worth(diagnosis, cause)
     if channel:

@@ -19,7 +19,6 @@ from tendon_ros.report.diagnosis_words import (
     place_words,
     scale,
     sized,
-    with_unit,
 )
 
 #: the verdict as a label
@@ -242,25 +241,6 @@ def sizes(cause: Cause) -> str:
         f'{name} {sized(found.value, found.ci95, found.unit)}'
         for name, found in cause.parameters.items()
     )
-
-
-def together(cause: Cause) -> str:
-    """
-    Return which effects would together do what a cause does.
-
-    :param cause: an effect that was found.
-    :return: a sentence without its full stop; empty where there are none.
-    """
-    effect = find(cause.effect)
-    if effect.alike is None:
-        return ''
-    sizes = effect.alike(**{name: found.value for name, found in cause.parameters.items()})
-    units = {name: find(name).parameters[0].unit for name in sizes}
-    parts = [
-        f'{inside(find(name).title)} of {with_unit(size, units[name])}'
-        for name, size in sizes.items()
-    ]
-    return f'{" and ".join(parts)} together would do the same'
 
 
 def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import FittedParameter
 from tendon_ros.report.diagnosis_text import summary
 from tendon_ros.report.diagnosis_verdict import headline, overall, rest_words, worth
@@ -197,3 +198,20 @@ def test_friction_of_each_direction_is_said_as_two_effects_too(case):
     assert (
         'Coulomb friction of 20 N·m and torque bias of 3.2 N·m together would do the same' in text
     )
+
+
+def test_two_effects_that_one_alone_would_do_are_said_to(case):
+    diagnosis, _ = case('one_cause')
+    whole = Named(effect='asymmetric_friction', place='pulley_3')
+    two = tuple(
+        diagnosis.causes[0].model_copy(
+            update={'effect': effect, 'place': place, 'indistinguishable': (whole,)}
+        )
+        for effect, place in (('coulomb_friction', 'pulley_3'), ('torque_bias', 'motor_3'))
+    )
+    told = ' '.join(summary(diagnosis.model_copy(update={'causes': two})).split())
+    friction = 'asymmetric friction on pulley 3 alone would do'
+    assert f'with torque bias of motor 3 it does what {friction}' in told
+    assert f'with Coulomb friction on pulley 3 it does what {friction}' in told
+    one = ' '.join(summary(diagnosis.model_copy(update={'causes': two[:1]})).split())
+    assert friction not in one

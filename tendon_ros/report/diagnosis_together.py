@@ -1,0 +1,41 @@
+"""Which effects together do what one alone does, in words."""
+
+from __future__ import annotations
+
+from tendon_ros.diagnose.result import Cause, Diagnosis
+from tendon_ros.effects import find
+from tendon_ros.report.diagnosis_words import effect_words, inside, with_unit
+
+
+def together(diagnosis: Diagnosis, cause: Cause) -> str:
+    """
+    Return which effects would together do what a cause does, or what it does with another one.
+
+    :param diagnosis: the answer that the cause is part of.
+    :param cause: an effect that was found.
+    :return: a sentence without its full stop; empty where there are none.
+    """
+    effect = find(cause.effect)
+    if effect.alike is None:
+        return _with_another(diagnosis, cause)
+    sizes = effect.alike(**{name: found.value for name, found in cause.parameters.items()})
+    units = {name: find(name).parameters[0].unit for name in sizes}
+    parts = [
+        f'{inside(find(name).title)} of {with_unit(size, units[name])}'
+        for name, size in sizes.items()
+    ]
+    return f'{" and ".join(parts)} together would do the same'
+
+
+def _with_another(diagnosis: Diagnosis, cause: Cause) -> str:
+    """Return what a cause does together with another one, where one effect alone would do it."""
+    for whole in cause.indistinguishable:
+        effect = find(whole.effect)
+        parts = effect.alike(**effect.typical) if effect.alike else {}
+        for other in diagnosis.causes:
+            apart = other.effect != cause.effect and {other.effect, cause.effect} <= set(parts)
+            if apart and whole in other.indistinguishable:
+                words = (effect_words(o.effect, o.place) for o in (other, whole))
+                beside, alone = map(inside, words)
+                return f'with {beside} it does what {alone} alone would do'
+    return ''
