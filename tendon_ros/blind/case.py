@@ -22,8 +22,8 @@ from tendon_ros.blind.gap import gap_of, Ran
 from tendon_ros.blind.laws import KIN
 from tendon_ros.blind.motion import setpoints
 from tendon_ros.blind.rig import Rig, run
-from tendon_ros.blind.sensing import CHANNEL_SETS, clean, recorded
-from tendon_ros.blind.setup import Setup
+from tendon_ros.blind.sensing import clean, recorded
+from tendon_ros.blind.setup import channel_sets, Setup
 from tendon_ros.model.instrument import Instrument
 
 #: the strata in the order in which cases take them; single effects make half of all
@@ -57,13 +57,19 @@ class Settings:
 
     ``bench``: the rig, one of :data:`~tendon_ros.blind.bench.BENCHES`; ``nuisance``: one standard
     deviation of the relative error of every inertia, stiffness and preload, three times that for
-    damping; ``strata``, ``channels``: those to take in turn.
+    damping; ``strata``, ``channels``: those to take in turn, of channels all that the rig has
+    where none are given.
     """
 
     bench: str = 'bench'
     nuisance: float = 0.01
     strata: tuple[str, ...] = PATTERN
-    channels: tuple[str, ...] = CHANNEL_SETS
+    channels: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Take all sets of channels that the rig has where none are given."""
+        if not self.channels:
+            object.__setattr__(self, 'channels', channel_sets(self.bench))
 
 
 @dataclass(frozen=True)

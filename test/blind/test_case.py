@@ -54,7 +54,7 @@ def test_channels_that_are_not_there_are_absent(channels, case):
 
 
 def test_an_axis_has_motor_signals_alone():
-    one = made(7, 1, Settings(bench='axis', channels=('motor',)))
+    one = made(7, 1, Settings(bench='axis'))
     assert one.label['stratum'] == 'none'
     assert list(one.recordings) == ['fast', 'slow', 'steps']
     for recording in one.recordings.values():
@@ -63,7 +63,7 @@ def test_an_axis_has_motor_signals_alone():
 
 
 def test_an_arm_is_seen_as_a_bus_leaves_it():
-    one = made(7, 1, Settings(bench='arm', channels=('motor',)))
+    one = made(7, 1, Settings(bench='arm'))
     assert [use.effect for use in one.instrument.effects] == ['gravity']
     for recording in one.recordings.values():
         angle = recording['actuator/pulley_M/position']
@@ -93,7 +93,7 @@ def test_what_a_file_knows_well_is_as_far_off_as_it_says():
 
 def test_the_body_of_an_axis_is_not_as_guessed(monkeypatch):
     def torque():
-        one = made(7, 1, Settings(bench='axis', channels=('motor',)))
+        one = made(7, 1, Settings(bench='axis'))
         return one.recordings['fast']['actuator/pulley_M/effort'].value
 
     other = torque()
