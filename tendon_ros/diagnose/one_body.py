@@ -10,14 +10,15 @@ from itertools import combinations
 import math
 
 from tendon_ros.diagnose.bodies import of_one_body
+from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.parsimony import as_good
-from tendon_ros.diagnose.rivals import BETTER, CLOSE, CREEPING, sharpened
+from tendon_ros.diagnose.rivals import CLOSE, CREEPING, sharpened
 from tendon_ros.diagnose.steps import best_of, Steps
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Screen
 
 
@@ -51,12 +52,18 @@ def merge(steps: Steps, found: Found) -> bool:
         if rivals and as_good(problem, rivals[0].fit, state):
             found.states[-1] = steps.settled(rivals[0].fit.model)
             merged = True
+        elif (whole := _whole(steps, state, one, two)) is not None:
+            # two faults of one body at once are less likely than one
+            fit = problem.fitted(whole, problem.slopes(state), CREEPING, 1e-3)
+            if _ties(problem, fit, state):
+                found.states[-1] = fit
+                merged = True
     return merged
 
 
 def divide(steps: Steps, found: Found) -> bool:
     """
-    Let effects that together do the same take the place of one, if they do better.
+    Let effects that together do the same take the place of one, if they do plainly better.
 
     A motor's bias beside Coulomb friction is friction that differs by direction, but while that
     builds up after a reversal.
@@ -73,10 +80,15 @@ def divide(steps: Steps, found: Found) -> bool:
         if parts is None:
             continue
         two = problem.fitted(parts, problem.slopes(state), CREEPING, 1e-3)
-        if two.cost < BETTER * state.cost:
+        if not _ties(problem, state, two):
             found.states[-1] = two
             divided = True
     return divided
+
+
+def _ties(problem: Problem, state: Fit, other: Fit) -> bool:
+    """Return whether a state is no worse than another one, or by no more than a tie."""
+    return state.cost - other.cost <= tie(problem, other) * len(other.left)
 
 
 def _parts(steps: Steps, state: Fit, cause: Candidate) -> Model | None:
