@@ -132,6 +132,7 @@ def _asked(
     from itertools import combinations
 
     from tendon_ros.base.errors import EffectError
+    from tendon_ros.diagnose.together import alone
     from tendon_ros.model.instrument import EffectUse
 
     diagnosis = None if path is None else _read(path)
@@ -142,9 +143,9 @@ def _asked(
     sets = [[_named(instrument, word) for word in words]] if words else []
     if diagnosis is not None and not words:
         sets = [
-            [(c.effect, c.place), *((o.effect, o.place) for o in c.indistinguishable)]
+            [(c.effect, c.place), *((o.effect, o.place) for o in rivals)]
             for c in diagnosis.causes
-            if c.indistinguishable
+            if (rivals := alone(diagnosis, c))
         ]
     if not sets:
         where = f'{path}: leaves nothing to tell apart' if path else 'nothing to tell apart'

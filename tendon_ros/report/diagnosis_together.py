@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tendon_ros.diagnose.result import Cause, Diagnosis
+from tendon_ros.diagnose.together import partner
 from tendon_ros.effects import find
 from tendon_ros.report.diagnosis_words import effect_words, inside, with_unit
 
@@ -17,7 +18,10 @@ def together(diagnosis: Diagnosis, cause: Cause) -> str:
     """
     effect = find(cause.effect)
     if effect.alike is None:
-        return _with_another(diagnosis, cause)
+        if (found := partner(diagnosis, cause)) is None:
+            return ''
+        beside, alone = (inside(effect_words(o.effect, o.place)) for o in found)
+        return f'with {beside} it does what {alone} alone would do'
     sizes = effect.alike(**{name: found.value for name, found in cause.parameters.items()})
     units = {name: find(name).parameters[0].unit for name in sizes}
     parts = [
@@ -25,17 +29,3 @@ def together(diagnosis: Diagnosis, cause: Cause) -> str:
         for name, size in sizes.items()
     ]
     return f'{" and ".join(parts)} together would do the same'
-
-
-def _with_another(diagnosis: Diagnosis, cause: Cause) -> str:
-    """Return what a cause does together with another one, where one effect alone would do it."""
-    for whole in cause.indistinguishable:
-        effect = find(whole.effect)
-        parts = effect.alike(**effect.typical) if effect.alike else {}
-        for other in diagnosis.causes:
-            apart = other.effect != cause.effect and {other.effect, cause.effect} <= set(parts)
-            if apart and whole in other.indistinguishable:
-                words = (effect_words(o.effect, o.place) for o in (other, whole))
-                beside, alone = map(inside, words)
-                return f'with {beside} it does what {alone} alone would do'
-    return ''
