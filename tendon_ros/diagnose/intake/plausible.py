@@ -1,9 +1,10 @@
 """
 Channels of the wrong sign or unit, and dead ones: by what the model expects under the same motion.
 
-Only clear cases count: a correlation of the wrong sign that no rectified sensor and no unmodelled
-spring or weight can make, a factor that is exactly that of a unit, or not a single change where
-the model expects a large one.
+Stamps of channels that another recorder took are moved before that, for a shape that is moved says
+nothing of signs. Only clear cases count: a correlation of the wrong sign that no rectified sensor
+and no unmodelled spring or weight can make, a factor that is exactly that of a unit, or not a
+single change where the model expects a large one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from tendon_ros.diagnose.intake.expected import Expectation, expectations
 from tendon_ros.diagnose.intake.judgement import Finding, judged, UNTOLD
 from tendon_ros.diagnose.intake.misdriven import misdriven, suspicious
 from tendon_ros.diagnose.intake.step import Sifted, without
+from tendon_ros.diagnose.intake.unsynchronised import on_one_clock
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.model.instrument import Instrument
 
@@ -49,8 +51,10 @@ def plausible(recordings: Sequence[Recording], instrument: Instrument) -> Sifted
         said = fault or (common if suspicious(own) else '')
         if said:
             sentences.append(f'{recording.name}: {said}')
-        else:
-            heard.append(_Judged(recording, _findings(own)))
+            continue
+        moved, late = on_one_clock(recording, own)
+        sentences += late
+        heard.append(_Judged(moved, _findings(expectations(moved, instrument) if late else own)))
     spreading = _spreading(heard)
     kept = []
     for one in heard:
