@@ -15,6 +15,9 @@ from __future__ import annotations
 from tendon_ros.base.effect import Effect, Numbers, SENSED
 from tendon_ros.base.parameter import Parameter
 
+#: [s] by which a sensor may be late; more is another clock
+LONGEST = 0.05
+
 
 def modify(numbers: Numbers, index: int, time: float) -> None:
     """Delay a sensor."""
@@ -32,7 +35,7 @@ EFFECT = Effect(
             meaning='age of the reading',
             neutral=0.0,
             low=0.0,
-            high=0.05,
+            high=LONGEST,
             typical=0.003,
         ),
     ),

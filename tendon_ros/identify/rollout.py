@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import EffectError, SimulationError
-from tendon_ros.effects import find
+from tendon_ros.effects.sensor_delay import LONGEST
 from tendon_ros.identify.beginning import Beginning
 from tendon_ros.identify.effort import Effort
 from tendon_ros.identify.means import averaged
@@ -34,7 +34,6 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 WHOLE = 1e-6  # part of a bin that no delay is told by
-LONGEST = next(p.high for p in find('sensor_delay').parameters if p.name == 'time')  # [s]
 #: [bytes] of predictions that are remembered: a quarter of what is asked was asked a moment ago,
 #: mostly of recordings in which the event that moves did not happen
 REMEMBERED = 3e7

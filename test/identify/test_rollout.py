@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.effects.sensor_delay import LONGEST
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.residuals import FEW
-from tendon_ros.identify.rollout import LONGEST, Rollouts
+from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import segment_of
 from tendon_ros.identify.step_size import ROUGHER
 from tendon_ros.identify.true_motion import true_motion

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Channel, FloatArray, Recording
 from tendon_ros.diagnose.intake.expected import Comparison, Expectation, STEP
-from tendon_ros.effects import find
+from tendon_ros.effects.sensor_delay import LONGEST
 
 #: [s] by which a channel may be off; and the part of the shared time
 MOST, PART = 5.0, 0.2
@@ -29,8 +29,6 @@ COARSE = 5  # steps of the grid between lags that are tried at first
 FITS, BETTER = 0.1, 0.25
 #: times what stays at the best lag, and more of the power, that stays everywhere else; [s] around
 AGAIN, MORE, AROUND = 2.0, 0.05, 0.25
-#: [s] by which a sensor may be late, which is an effect
-LATE = next(p.high for p in find('sensor_delay').parameters if p.name == 'time')
 
 
 def on_one_clock(recording: Recording, runs: Sequence[Expectation]) -> tuple[Recording, list[str]]:
@@ -68,7 +66,7 @@ def _lag(one: Comparison, run: Expectation) -> tuple[float, float]:
         return 1.0, 0.0
     count = len(one.measured)
     most = min(round(MOST / STEP), int(PART * count)) // COARSE * COARSE
-    if most * STEP <= LATE:
+    if most * STEP <= LONGEST:
         return 1.0, 0.0
     made = _made_of(one, run)[most : count - most]
     tried = np.arange(-most, most + 1, COARSE)
@@ -84,7 +82,7 @@ def _lag(one: Comparison, run: Expectation) -> tuple[float, float]:
         return least, 0.0
     near = tried[best] + np.arange(-COARSE, COARSE + 1)
     lag = STEP * int(near[np.argmin(_stays(one.measured, made, most, near, 1))])
-    return least, lag if abs(lag) > LATE else 0.0
+    return least, lag if abs(lag) > LONGEST else 0.0
 
 
 def _made_of(one: Comparison, run: Expectation) -> FloatArray:
