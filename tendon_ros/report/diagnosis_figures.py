@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tendon_ros.diagnose.evidence import Rival, Step
 from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Where
+from tendon_ros.diagnose.together import alone
 from tendon_ros.report.blocks import Bar, Bars, HeatMap, Tone
 from tendon_ros.report.diagnosis_verdict import by_place, floor_of, in_floors, worth
 from tendon_ros.report.diagnosis_words import (
@@ -67,7 +68,7 @@ def cause_bars(diagnosis: Diagnosis) -> Bars:
     rows = []
     named = {(c.effect, c.place) for c in diagnosis.causes}
     for cause in diagnosis.causes:
-        same = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
+        same = [inside(effect_words(c.effect, c.place)) for c in alone(diagnosis, cause)]
         named |= {(c.effect, c.place) for c in cause.indistinguishable}
         note = f'Cannot be told from {joined(same)}.' if same else ''
         label = effect_words(cause.effect, cause.place)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from tendon_ros import __version__
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.result import Cause, Diagnosis
+from tendon_ros.diagnose.together import alone
 from tendon_ros.effects import find
 from tendon_ros.report.blocks import (
     Banner,
@@ -119,8 +120,8 @@ def _tiles(diagnosis: Diagnosis) -> tuple[Tile, ...]:
         first, *others = diagnosis.causes
         which = effect_words(first.effect, first.place)
         text = percent(first.probability)
-        if first.indistinguishable:
-            text += f', or {count(len(first.indistinguishable), "other")} that look the same'
+        if same := alone(diagnosis, first):
+            text += f', or {count(len(same), "other")} that look the same'
         if others:
             text += f', and {count(len(others), "more cause")}'
     elif diagnosis.verdict == 'no_gap':
@@ -212,7 +213,7 @@ def _card(diagnosis: Diagnosis, cause: Cause) -> Card:
     channel, text = worth(diagnosis, cause)
     if channel:
         blocks.append(Prose(f'It shows most in {channel}: {text}.'))
-    same = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
+    same = [inside(effect_words(c.effect, c.place)) for c in alone(diagnosis, cause)]
     if same:
         blocks.append(Prose(f'These channels cannot tell it from {joined(same)}.'))
     if both := together(diagnosis, cause):

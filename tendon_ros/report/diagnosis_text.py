@@ -8,6 +8,7 @@ from textwrap import wrap
 
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
+from tendon_ros.diagnose.together import alone
 from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
@@ -99,7 +100,7 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
     yield f'{percent(cause.probability)} {words}: {sizes(cause)}'.rstrip(' :')
     if cause.recording:
         yield f'  in {cause.recording} alone'
-    others = [inside(effect_words(c.effect, c.place)) for c in cause.indistinguishable]
+    others = [inside(effect_words(c.effect, c.place)) for c in alone(diagnosis, cause)]
     if others:
         yield f'  these channels cannot tell it from {", ".join(others)}'
     if same := together(diagnosis, cause):

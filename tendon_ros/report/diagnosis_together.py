@@ -21,11 +21,13 @@ def together(diagnosis: Diagnosis, cause: Cause) -> str:
         if (found := partner(diagnosis, cause)) is None:
             return ''
         beside, alone = (inside(effect_words(o.effect, o.place)) for o in found)
-        return f'with {beside} it does what {alone} alone would do'
+        return f'with {beside} it does what {alone} alone does, and these channels cannot tell'
     sizes = effect.alike(**{name: found.value for name, found in cause.parameters.items()})
     units = {name: find(name).parameters[0].unit for name in sizes}
     parts = [
         f'{inside(find(name).title)} of {with_unit(size, units[name])}'
         for name, size in sizes.items()
     ]
-    return f'{" and ".join(parts)} together would do the same'
+    told = not set(sizes) <= {c.effect for c in cause.indistinguishable}
+    end = 'would do the same' if told else 'do the same, and these channels cannot tell'
+    return f'{" and ".join(parts)} together {end}'

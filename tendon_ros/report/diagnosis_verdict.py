@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis, Where
+from tendon_ros.diagnose.together import alone
 from tendon_ros.effects import find
 from tendon_ros.report.diagnosis_words import (
     channel_words,
@@ -116,7 +117,7 @@ def headline(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == 'explained' and diagnosis.causes:
         return (
             f'The gap of {before} noise deviations is explained by '
-            f'{_named(diagnosis.causes)}; {_shrinks(diagnosis)} to {after}.'
+            f'{_named(diagnosis)}; {_shrinks(diagnosis)} to {after}.'
         )
     lies = ''
     if diagnosis.where:
@@ -128,7 +129,7 @@ def headline(diagnosis: Diagnosis) -> str:
         if diagnosis.beside and after != before:
             nothing += f' What acts like {_likenesses(diagnosis.beside)} shrinks it to {after}.'
         return nothing + lies
-    named = _named(diagnosis.causes)
+    named = _named(diagnosis)
     does = 'explains' if len(diagnosis.causes) == 1 else 'explain'
     if diagnosis.verdict == 'unexplained':
         return (
@@ -200,8 +201,9 @@ def _no_gap(diagnosis: Diagnosis) -> str:
     )
 
 
-def _named(causes: tuple[Cause, ...]) -> str:
-    said = [_cause(cause) for cause in causes[:_NAMED]]
+def _named(diagnosis: Diagnosis) -> str:
+    causes = diagnosis.causes
+    said = [_cause(diagnosis, cause) for cause in causes[:_NAMED]]
     if len(causes) > _NAMED:
         return f'{count(len(causes), "effect")}, first of all {joined(said)}'
     return joined(said)
@@ -220,9 +222,9 @@ def _likenesses(causes: tuple[Cause, ...]) -> str:
     return joined([*names[:_NAMED], f'{count(more, "effect")} more'] if more > 0 else names)
 
 
-def _cause(cause: Cause) -> str:
+def _cause(diagnosis: Diagnosis, cause: Cause) -> str:
     text = inside(effect_words(cause.effect, cause.place))
-    others = cause.indistinguishable
+    others = alone(diagnosis, cause)
     if len(others) == 1:
         text += f' or {inside(effect_words(others[0].effect, others[0].place))}'
     elif others:

@@ -198,6 +198,12 @@ def test_friction_of_each_direction_is_said_as_two_effects_too(case):
     assert (
         'Coulomb friction of 20 N·m and torque bias of 3.2 N·m together would do the same' in text
     )
+    both = (('coulomb_friction', 'pulley_3'), ('torque_bias', 'motor_3'))
+    same = tuple(Named(effect=effect, place=place) for effect, place in both)
+    unsure = cause.model_copy(update={'indistinguishable': same})
+    text = ' '.join(summary(diagnosis.model_copy(update={'causes': (unsure,)})).split())
+    assert 'together do the same, and these channels cannot tell' in text
+    assert 'cannot tell it from' not in text  # neither of them alone
 
 
 def test_two_effects_that_one_alone_would_do_are_said_to(case):
@@ -210,7 +216,7 @@ def test_two_effects_that_one_alone_would_do_are_said_to(case):
         for effect, place in (('coulomb_friction', 'pulley_3'), ('torque_bias', 'motor_3'))
     )
     told = ' '.join(summary(diagnosis.model_copy(update={'causes': two})).split())
-    friction = 'asymmetric friction on pulley 3 alone would do'
+    friction = 'asymmetric friction on pulley 3 alone does'
     assert f'with torque bias of motor 3 it does what {friction}' in told
     assert f'with Coulomb friction on pulley 3 it does what {friction}' in told
     one = ' '.join(summary(diagnosis.model_copy(update={'causes': two[:1]})).split())
