@@ -68,7 +68,12 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
 def _part(name: str, texts: Sequence[str], more: int = 0) -> list[str]:
     lines: list[str] = []
     for text in texts:
-        lines += [text] if '  ' in text else wrap(text, _WIDTH - _INDENT, subsequent_indent='  ')
+        said = text.lstrip()
+        if '  ' in said:  # a row of a table
+            lines.append(text)
+            continue
+        first = ' ' * (len(text) - len(said))
+        lines += wrap(said, _WIDTH - _INDENT, initial_indent=first, subsequent_indent='  ')
     if more > 0:
         lines.append(f'and {more} more, in the report')
     head = name.ljust(_INDENT)

@@ -201,7 +201,9 @@ def test_friction_of_each_direction_is_said_as_two_effects_too(case):
     both = (('coulomb_friction', 'pulley_3'), ('torque_bias', 'motor_3'))
     same = tuple(Named(effect=effect, place=place) for effect, place in both)
     unsure = cause.model_copy(update={'indistinguishable': same})
-    text = ' '.join(summary(diagnosis.model_copy(update={'causes': (unsure,)})).split())
+    lines = summary(diagnosis.model_copy(update={'causes': (unsure,)}))
+    assert max(map(len, lines.splitlines())) <= 96
+    text = ' '.join(lines.split())
     assert 'together do the same, and these channels cannot tell' in text
     assert 'cannot tell it from' not in text  # neither of them alone
 
