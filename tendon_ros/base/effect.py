@@ -113,6 +113,11 @@ class Effect:
         return self.hook == 'budget'
 
     @cached_property
+    def parts(self) -> frozenset[str]:
+        """Effects that together do the same; none for most."""
+        return frozenset(self.alike(**self.typical)) if self.alike else frozenset()
+
+    @cached_property
     def neutral(self) -> Mapping[str, float]:
         """Parameters with which the effect changes nothing."""
         return {p.name: p.typical if p.shapes_only else p.neutral for p in self.parameters}

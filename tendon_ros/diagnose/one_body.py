@@ -54,7 +54,7 @@ def merge(steps: Steps, found: Found) -> bool:
             merged = True
         elif (whole := _whole(steps, state, one, two)) is not None:
             # two faults of one body at once are less likely than one
-            fit = problem.fitted(whole, problem.slopes(state), CREEPING, 1e-3)
+            fit = _fitted(problem, whole, state)
             if _ties(problem, fit, state):
                 found.states[-1] = fit
                 merged = True
@@ -79,11 +79,16 @@ def divide(steps: Steps, found: Found) -> bool:
         parts = _parts(steps, state, cause)
         if parts is None:
             continue
-        two = problem.fitted(parts, problem.slopes(state), CREEPING, 1e-3)
+        two = _fitted(problem, parts, state)
         if not _ties(problem, state, two):
             found.states[-1] = two
             divided = True
     return divided
+
+
+def _fitted(problem: Problem, model: Model, state: Fit) -> Fit:
+    """Return the fit of a model that is another account of a state."""
+    return problem.fitted(model, problem.slopes(state), CREEPING, 1e-3)
 
 
 def _ties(problem: Problem, state: Fit, other: Fit) -> bool:
@@ -120,9 +125,8 @@ def _whole(steps: Steps, state: Fit, one: Candidate, two: Candidate) -> Model | 
     instrument = steps.problem.rollouts.instrument
     for whole in steps.candidates:
         effect = find(whole.effect)
-        if effect.alike is None or whole in causes or not of_one_body(instrument, one, whole):
-            continue
-        if set(effect.alike(**effect.typical)) != {one.effect, two.effect}:
+        does = effect.parts == {one.effect, two.effect}
+        if not does or whole in causes or not of_one_body(instrument, one, whole):
             continue
         values = dict(effect.typical)
         for part in (one, two):
@@ -148,19 +152,16 @@ def instead(steps: Steps, state: Fit) -> dict[Candidate, list[Rival]]:
     problem = steps.problem
     found: dict[Candidate, list[Rival]] = {}
 
-    def fitted(model: Model) -> Fit:
-        return problem.fitted(model, problem.slopes(state), CREEPING, 1e-3)
-
     for cause in state.model.causes:
         if (model := _parts(steps, state, cause)) is not None:
-            fit = fitted(model)
+            fit = _fitted(problem, model, state)
             new = [c for c in fit.model.causes if c not in state.model.causes]
             found[cause] = [Rival(c, fit) for c in new]
     for one, two in combinations(state.model.causes, 2):
         if not of_one_body(problem.rollouts.instrument, one, two):
             continue
         if (model := _whole(steps, state, one, two)) is not None:
-            rival = Rival(model.causes[-1], fitted(model))
+            rival = Rival(model.causes[-1], _fitted(problem, model, state))
             for part in (one, two):
                 found.setdefault(part, []).append(rival)
     return found

@@ -2,21 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from tendon_ros.diagnose.result import Candidate, Cause, Diagnosis
 from tendon_ros.effects import find
-
-
-def parts(effect: str) -> Mapping[str, float]:
-    """
-    Return what together does the same as an effect of typical size.
-
-    :param effect: its id.
-    :return: sizes by effect; empty where nothing does.
-    """
-    known = find(effect)
-    return known.alike(**known.typical) if known.alike else {}
 
 
 def partner(diagnosis: Diagnosis, cause: Cause) -> tuple[Cause, Candidate] | None:
@@ -28,9 +15,9 @@ def partner(diagnosis: Diagnosis, cause: Cause) -> tuple[Cause, Candidate] | Non
     :return: the other cause and that one effect, of which neither can be told; None without.
     """
     for whole in cause.indistinguishable:
-        both = parts(whole.effect)
+        both = find(whole.effect).parts
         for other in diagnosis.causes:
-            apart = other.effect != cause.effect and {other.effect, cause.effect} <= set(both)
+            apart = other.effect != cause.effect and {other.effect, cause.effect} <= both
             if apart and whole in other.indistinguishable:
                 return other, whole
     return None
@@ -44,7 +31,7 @@ def alone(diagnosis: Diagnosis, cause: Cause) -> tuple[Candidate, ...]:
     :param cause: an effect that was found.
     :return: those that cannot be told from it, without who does the same beside another one only.
     """
-    both = set(parts(cause.effect))
+    both = find(cause.effect).parts
     found = partner(diagnosis, cause)
     whole = found[1] if found else None
     together = both and both <= {c.effect for c in cause.indistinguishable}
