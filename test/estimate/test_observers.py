@@ -401,14 +401,18 @@ def test_friction_stiffer_than_cables_does_not_upset_the_balance(rms):
     ]
     rubbing = replace(bench, effects=tuple(effects))
     press = chosen_trajectory('paper_fig12', bench.motor_names, {})
-    recording = simulate(rubbing, press, rate=200.0, seed=3)
-    estimated = estimate_recording(
-        recording, build_observer(rubbing, 'static_balance'), rate=100.0
+    whole = simulate(rubbing, press, rate=200.0, seed=3)
+    until = {name: c.time < 12.0 for name, c in whole.channels.items()}  # one reversal is enough
+    recording = whole.with_channels(
+        Channel(name, c.time[until[name]], c.value[until[name]])
+        for name, c in whole.channels.items()
     )
+    observer = build_observer(rubbing, 'static_balance')
+    estimated = estimate_recording(recording, observer, rate=50.0)
     estimate = estimated['estimate/force']
     truth = recording['load_cell/force'].at(estimate.time)
     assert truth.max() > 40.0
-    # 0.96 where the balance takes friction for what it was a measurement before
+    # 0.86 where the balance takes friction for what it was a measurement before
     assert rms(estimate.value - truth) < 0.75
 
 

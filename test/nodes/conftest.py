@@ -165,9 +165,10 @@ def client(domain):
     made.close()
 
 
-@pytest.fixture(scope='session')
+@pytest.fixture(scope='module')
 def simulator(launched):
-    """Return a running simulator that all tests share."""
+    """Return a running simulator that the tests of a file share; it ends with them."""
     one = launched('simulator')
     one.wait_for('ready after')
-    return one
+    yield one
+    one.stop()
