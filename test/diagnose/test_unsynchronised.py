@@ -1,9 +1,12 @@
 """Channels that another recorder took are put on the motors' clock; what a force may do is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -55,3 +58,25 @@ def test_one_tone_comes_again_and_tells_no_clock(measured_on):
         one = moved(run, name, by)
         [kept] = admitted([one], body).recordings
         assert kept[name].time[0] == one[name].time[0]
+
+
+def test_a_push_is_no_other_clock(bench, measured_on):
+    """Looked for at another place, it would be left behind, and the rest may fit by chance."""
+    push = ('disturbance', 'pulley_L', {'torque': -0.8, 'start': 2.6, 'duration': 1.1})
+    settings = (('duration', '14 s'), ('amplitude', '6 deg'), ('seed', '2'))
+    run = measured_on(bench, push, settings=settings, without=('pulley/', 'load_cell', 'setpoint'))
+    off = zip((1.8, 0.6, 1.5, 0.6, 1.7), (0.5, 1.8, 0.6, 1.9, 0.5), strict=True)
+    guessed = tuple(
+        replace(p, inertia=heavy * p.inertia, damping=viscous * p.damping)
+        for p, (heavy, viscous) in zip(bench.pulleys, off, strict=True)
+    )
+    [kept] = admitted([run], replace(bench, pulleys=guessed)).recordings
+    assert kept[EFFORT].time[0] == run[EFFORT].time[0]
+
+
+def test_friction_of_an_inner_pulley_is_no_other_clock():
+    """It turns round later than any motor does, by somewhat more than a sensor may be late."""
+    case = made(662, 7, Settings(bench='guessed'))
+    assert [e['effect'] for e in case.label['effects']] == ['coulomb_friction']
+    intake = admitted([case.recordings['free']], case.instrument)
+    assert not any('recorder' in text for text in intake.left_out)

@@ -7,8 +7,9 @@ stamps are moved to where the channel fits what the motion asks for.
 
 A shape that seems moved may be another force: friction follows the speed and inertia the
 acceleration, a quarter of a period apart. So a channel may be anything that is made of the model's
-expectation, of angles, speeds and directions of all motors; only if nothing of that fits where the
-stamps are, and plainly does elsewhere, at one place and no other, the stamps are wrong.
+expectation, of angles, speeds, directions and accelerations of all motors; only if nothing of that
+fits where the stamps are, and plainly does elsewhere, at one place and no other, the stamps are
+wrong. It is asked of the same readings, or a push would be left behind by looking elsewhere.
 """
 
 from __future__ import annotations
@@ -29,6 +30,9 @@ COARSE = 5  # steps of the grid between lags that are tried at first
 FITS, BETTER = 0.1, 0.25
 #: times what stays at the best lag, and more of the power, that stays everywhere else; [s] around
 AGAIN, MORE, AROUND = 2.0, 0.05, 0.25
+#: steps of the grid by which an effect may make a sensor late; and no lag
+LATE = round(LONGEST / STEP)
+NOW = np.zeros(1, dtype=np.int64)
 
 
 def on_one_clock(recording: Recording, runs: Sequence[Expectation]) -> tuple[Recording, list[str]]:
@@ -68,12 +72,19 @@ def _lag(one: Comparison, run: Expectation) -> tuple[float, float]:
     most = min(round(MOST / STEP), int(PART * count)) // COARSE * COARSE
     if most * STEP <= LONGEST:
         return 1.0, 0.0
-    made = _made_of(one, run)[most : count - most]
+    whole = _made_of(one, run)
+    made = whole[most : count - most]
     tried = np.arange(-most, most + 1, COARSE)
     stays = _stays(one.measured, made, most, tried, COARSE)
-    here = float(stays[most // COARSE])
     best = int(np.argmin(stays))
     least = float(stays[best])
+    # the readings that fit there, about where their stamps are: a sensor may be late
+    first = most + int(tried[best])
+    late = range(-min(LATE, count - len(made) - first), min(LATE, first) + 1, COARSE)
+    here = min(
+        float(_stays(one.measured, whole[first - n :][: len(made)], first, NOW, COARSE)[0])
+        for n in late
+    )
     apart = np.abs(tried - tried[best]) * STEP > AROUND
     again = float(stays[apart].min(initial=1.0)) < AGAIN * least + MORE
     # where it fits already, friction that holds an inner pulley back may look late
@@ -90,7 +101,7 @@ def _made_of(one: Comparison, run: Expectation) -> FloatArray:
     columns = [np.ones(len(one.expected)), one.expected]
     for angle in run.motion.values():
         speed = np.gradient(angle, STEP)
-        columns += [angle, speed, np.sign(speed)]
+        columns += [angle, speed, np.sign(speed), np.gradient(speed, STEP)]
     return np.stack(columns, axis=1)
 
 
