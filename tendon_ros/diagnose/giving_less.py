@@ -10,12 +10,14 @@ a push is not.
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.bodies import turned
-from tendon_ros.diagnose.form import tie
+from tendon_ros.diagnose.form import TIE
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import SUDDEN
 
@@ -48,7 +50,6 @@ def giving_less(problem: Problem, state: Fit) -> frozenset[int]:
     }
     causes = state.model.causes
     channels = problem.channels()
-    equal = tie(problem, state) * len(state.left)
     own = float(state.left @ state.left)
     found: set[int] = set()
     for k, cause in enumerate(causes):
@@ -58,39 +59,65 @@ def giving_less(problem: Problem, state: Fit) -> frozenset[int]:
         moved = cause.place.removeprefix('pulley_')
         if not all(moved in s.prescribed for s in problem.rollouts.segments):
             continue  # the torque drives the model, and is not predicted
+        # whatever happens to a motor at a time may happen in several recordings
+        here = replace(cause, only='')
+        pushes = {
+            j
+            for j, other in enumerate(causes)
+            if (other.effect, other.place) == (PUSH, cause.place)
+            and at_once((here, state.model.values(k)), (other, state.model.values(j)))
+        }
         beside = {
             j
             for j, other in enumerate(causes)
-            if j != k and body.get(other.place, other.place) == cause.place
+            if j not in pushes and body.get(other.place, other.place) == cause.place
         }
-        if _left_with_less(problem, state, k, {k}, sensor.channel) < own - equal:
-            found.add(k)
-        elif beside and _left_with_less(problem, state, k, {k} | beside, sensor.channel) <= own:
-            found |= {k} | beside
+        stays, equal = _left_with_less(problem, state, pushes, pushes, sensor.channel)
+        if stays < own - equal:
+            found |= pushes
+        elif (
+            beside
+            and _left_with_less(problem, state, pushes, pushes | beside, sensor.channel)[0] <= own
+        ):
+            found |= pushes | beside
     return frozenset(found)
 
 
 def _left_with_less(
-    problem: Problem, state: Fit, k: int, gone: Collection[int], channel: str
-) -> float:
-    """Return the squares that stay if a motor gives less in the place of some causes."""
-    cause, values = state.model.causes[k], state.model.values(k)
-    wider = WIDER * values['duration']
-    first, last = values['start'] - wider, values['start'] + values['duration'] + wider
+    problem: Problem, state: Fit, pushes: Collection[int], gone: Collection[int], channel: str
+) -> tuple[float, float]:
+    """
+    Return the squares that stay if a motor gives less in the place of pushes, without some causes.
+
+    And those by which such a torque has to be better. What laws get wrong elsewhere in the
+    recordings is no reason to hold pushes for as good.
+    """
     segments = problem.rollouts.segments
-    within = [(first <= s.time) & (s.time <= last) & cause.acts_in(s.name) for s in segments]
-    # what happens then must not bend the rest
-    rest = problem.leaving_out(within).fitted(state.model.without(*gone), rounds=6)
+    events = [(state.model.causes[k], state.model.values(k)) for k in pushes]
+    within = [np.zeros(len(s.time), dtype=np.bool_) for s in segments]
+    for cause, values in events:
+        wider = WIDER * values['duration']
+        first, last = values['start'] - wider, values['start'] + values['duration'] + wider
+        for own, s in zip(within, segments, strict=True):
+            own |= (first <= s.time) & (s.time <= last) & cause.acts_in(s.name)
+    # what the torque is then must not bend the rest, which all else then still holds
+    torque = [np.array([[m.sensor.channel == channel] for m in s.measured]) for s in segments]
+    out = [own & then for own, then in zip(torque, within, strict=True)]
+    rest = problem.leaving_out(out).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
+    for cause, values in events:  # as it was beside the pushes
+        problem.forgive(left, cause, values)
     known = problem.predicted(rest.model)
     there = problem.sampled(within)
     time = problem.sampled([s.time for s in segments])
+    equal = 0.0
     for n, c, span in problem.spans():
         if segments[n].measured[c].sensor.channel == channel and there[span].any():
             own = np.flatnonzero(there[span]) + span.start
             left[own] = _with_less(left[own], known[own], time[own])
+            equal += TIE * len(own)
     stays = float(left @ left)
-    return stays if np.isfinite(stays) else np.inf
+    return (stays if np.isfinite(stays) else np.inf), equal
 
 
 def _with_less(left: FloatArray, known: FloatArray, time: FloatArray) -> FloatArray:

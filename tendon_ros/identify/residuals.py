@@ -35,7 +35,7 @@ class Residuals:
 
     :param rollouts: the model and what was measured.
     :param tolerances: what may move.
-    :param used: which bins count, one mask (bins,) a segment.
+    :param used: which bins count, one mask a segment, shape (bins,) or (channels, bins).
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Residuals:
         """
         Return the problem without some bins.
 
-        :param bins: which do not count, one mask (bins,) a segment.
+        :param bins: which do not count, one mask a segment, shape (bins,) or (channels, bins).
         :return: the problem.
         """
         used = [own & ~out for own, out in zip(self._used, bins, strict=True)]
@@ -164,10 +164,20 @@ class Residuals:
         predicted = self.rollouts.predicted(self.uses(model), asked)
         left = self.flat([m - p for m, p in zip(self.rollouts.measured, predicted, strict=True)])
         for k, cause in enumerate(model.causes):
-            for instant in _instants(cause, model.values(k)):
-                near = self._near(cause, instant)
-                left[near] = np.clip(left[near], -2.0, 2.0)
+            self.forgive(left, cause, model.values(k))
         return left
+
+    def forgive(self, left: FloatArray, cause: Candidate, values: Mapping[str, float]) -> None:
+        """
+        Cut short what is left about the ends of an event: how it came about is not its law.
+
+        :param left: what is left, shape (samples,); it is changed.
+        :param cause: an event, or one that has no ends.
+        :param values: of its parameters.
+        """
+        for instant in _instants(cause, values):
+            near = self._near(cause, instant)
+            left[near] = np.clip(left[near], -2.0, 2.0)
 
     def predicted(self, model: Model) -> FloatArray:
         """

@@ -61,6 +61,18 @@ def test_who_helps_such_a_push_goes_with_it(fitted_to):
     assert 2 not in giving_less(ready.problem, state)
 
 
+def test_what_stays_elsewhere_excuses_no_push(fitted_to):
+    """A friction that nobody thought of leaves much, but not while the motor gives less."""
+    friction = ('coulomb_friction', 'pulley_L', {'torque': 0.3})
+
+    def dip(time, value):
+        less = (time >= WHEN['start']) & (time < WHEN['start'] + WHEN['duration'])
+        return time, np.where(less, 1.2 * value, value)
+
+    ready, state = fitted_to((friction,), [(PUSH, {'torque': -0.2, **WHEN})], dip)
+    assert giving_less(ready.problem, state) == {0}
+
+
 @pytest.mark.parametrize('torque', [-0.5, 0.3])
 def test_a_push_is_one(fitted_to, torque):
     push = ('disturbance', 'pulley_M', {'torque': torque, **WHEN})
