@@ -101,8 +101,10 @@ def _left_with_less(
         for own, s in zip(within, segments, strict=True):
             own |= (first <= s.time) & (s.time <= last) & cause.acts_in(s.name)
     # what the torque is then must not bend the rest, which all else then still holds
-    torque = [np.array([[m.sensor.channel == channel] for m in s.measured]) for s in segments]
-    out = [own & then for own, then in zip(torque, within, strict=True)]
+    out = [
+        np.outer([m.sensor.channel == channel for m in s.measured], then).astype(np.bool_)
+        for s, then in zip(segments, within, strict=True)
+    ]
     rest = problem.leaving_out(out).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
     for cause, values in events:  # as it was beside the pushes
