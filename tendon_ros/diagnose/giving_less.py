@@ -9,7 +9,7 @@ a push is not.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +22,7 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import SUDDEN
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 PUSH = 'disturbance'
 #: part of a push's length that it may have begun earlier, or ended later
@@ -52,9 +53,10 @@ def giving_less(problem: Problem, state: Fit) -> frozenset[int]:
     channels = problem.channels()
     own = float(state.left @ state.left)
     found: set[int] = set()
+    asked: set[int] = set()
     for k, cause in enumerate(causes):
         sensor = torques.get(cause.place)
-        if cause.effect != PUSH or sensor is None or sensor.channel not in channels:
+        if cause.effect != PUSH or sensor is None or sensor.channel not in channels or k in asked:
             continue
         moved = cause.place.removeprefix('pulley_')
         if not all(moved in s.prescribed for s in problem.rollouts.segments):
@@ -72,54 +74,56 @@ def giving_less(problem: Problem, state: Fit) -> frozenset[int]:
             for j, other in enumerate(causes)
             if j not in pushes and body.get(other.place, other.place) == cause.place
         }
-        stays, equal = _left_with_less(problem, state, pushes, pushes, sensor.channel)
-        if stays < own - equal:
+        asked |= pushes
+        then = _torque_about(problem, state, pushes, sensor.channel)
+        # what laws get wrong elsewhere is no reason to hold pushes for as good
+        equal = TIE * float(problem.sampled(then).sum())
+        if _left_with_less(problem, state, pushes, pushes, then) < own - equal:
             found |= pushes
-        elif (
-            beside
-            and _left_with_less(problem, state, pushes, pushes | beside, sensor.channel)[0] <= own
-        ):
+        elif beside and _left_with_less(problem, state, pushes, pushes | beside, then) <= own:
             found |= pushes | beside
     return frozenset(found)
 
 
-def _left_with_less(
-    problem: Problem, state: Fit, pushes: Collection[int], gone: Collection[int], channel: str
-) -> tuple[float, float]:
-    """
-    Return the squares that stay if a motor gives less in the place of pushes, without some causes.
+def _torque_about(
+    problem: Problem, state: Fit, pushes: Collection[int], channel: str
+) -> list[BoolArray]:
+    """Return which bins are of a torque at the time of pushes, (channels, bins) a segment."""
+    found = []
+    for s in problem.rollouts.segments:
+        own = np.array([[m.sensor.channel == channel] for m in s.measured], dtype=np.bool_)
+        then = np.zeros(len(s.time), dtype=np.bool_)
+        for k in pushes:
+            values = state.model.values(k)
+            wider = WIDER * values['duration']
+            first, last = values['start'] - wider, values['start'] + values['duration'] + wider
+            acts = state.model.causes[k].acts_in(s.name)
+            then |= (first <= s.time) & (s.time <= last) & acts
+        found.append(own.reshape(-1, 1) & then)
+    return found
 
-    And those by which such a torque has to be better. What laws get wrong elsewhere in the
-    recordings is no reason to hold pushes for as good.
-    """
-    segments = problem.rollouts.segments
-    events = [(state.model.causes[k], state.model.values(k)) for k in pushes]
-    within = [np.zeros(len(s.time), dtype=np.bool_) for s in segments]
-    for cause, values in events:
-        wider = WIDER * values['duration']
-        first, last = values['start'] - wider, values['start'] + values['duration'] + wider
-        for own, s in zip(within, segments, strict=True):
-            own |= (first <= s.time) & (s.time <= last) & cause.acts_in(s.name)
+
+def _left_with_less(
+    problem: Problem,
+    state: Fit,
+    pushes: Collection[int],
+    gone: Collection[int],
+    then: Sequence[BoolArray],
+) -> float:
+    """Return the squares that stay if a motor gives less in the place of some causes."""
     # what the torque is then must not bend the rest, which all else then still holds
-    out = [
-        np.outer([m.sensor.channel == channel for m in s.measured], then).astype(np.bool_)
-        for s, then in zip(segments, within, strict=True)
-    ]
-    rest = problem.leaving_out(out).fitted(state.model.without(*gone), rounds=6)
+    rest = problem.leaving_out(then).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
-    for cause, values in events:  # as it was beside the pushes
-        problem.forgive(left, cause, values)
+    for k in pushes:  # as it was beside the pushes
+        problem.forgive(left, state.model.causes[k], state.model.values(k))
     known = problem.predicted(rest.model)
-    there = problem.sampled(within)
-    time = problem.sampled([s.time for s in segments])
-    equal = 0.0
-    for n, c, span in problem.spans():
-        if segments[n].measured[c].sensor.channel == channel and there[span].any():
-            own = np.flatnonzero(there[span]) + span.start
-            left[own] = _with_less(left[own], known[own], time[own])
-            equal += TIE * len(own)
+    there = problem.sampled(then)
+    time = problem.sampled([s.time for s in problem.rollouts.segments])
+    for _, _, span in problem.spans():
+        own = np.flatnonzero(there[span]) + span.start
+        left[own] = _with_less(left[own], known[own], time[own])
     stays = float(left @ left)
-    return (stays if np.isfinite(stays) else np.inf), equal
+    return stays if np.isfinite(stays) else np.inf
 
 
 def _with_less(left: FloatArray, known: FloatArray, time: FloatArray) -> FloatArray:

@@ -30,9 +30,8 @@ COARSE = 5  # steps of the grid between lags that are tried at first
 FITS, BETTER = 0.1, 0.25
 #: times what stays at the best lag, and more of the power, that stays everywhere else; [s] around
 AGAIN, MORE, AROUND = 2.0, 0.05, 0.25
-#: steps of the grid by which an effect may make a sensor late; and no lag
+#: steps of the grid by which an effect may make a sensor late
 LATE = round(LONGEST / STEP)
-NOW = np.zeros(1, dtype=np.int64)
 
 
 def on_one_clock(recording: Recording, runs: Sequence[Expectation]) -> tuple[Recording, list[str]]:
@@ -75,16 +74,14 @@ def _lag(one: Comparison, run: Expectation) -> tuple[float, float]:
     whole = _made_of(one, run)
     made = whole[most : count - most]
     tried = np.arange(-most, most + 1, COARSE)
-    stays = _stays(one.measured, made, most, tried, COARSE)
+    stays = _stays(_from(one.measured, most + tried, len(made)), made, COARSE)
     best = int(np.argmin(stays))
     least = float(stays[best])
     # the readings that fit there, about where their stamps are: a sensor may be late
     first = most + int(tried[best])
     late = range(-min(LATE, count - len(made) - first), min(LATE, first) + 1, COARSE)
-    here = min(
-        float(_stays(one.measured, whole[first - n :][: len(made)], first, NOW, COARSE)[0])
-        for n in late
-    )
+    own = _from(one.measured, np.array([first]), len(made))
+    here = min(float(_stays(own, whole[first - n :][: len(made)], COARSE)[0]) for n in late)
     apart = np.abs(tried - tried[best]) * STEP > AROUND
     again = float(stays[apart].min(initial=1.0)) < AGAIN * least + MORE
     # where it fits already, friction that holds an inner pulley back may look late
@@ -92,7 +89,8 @@ def _lag(one: Comparison, run: Expectation) -> tuple[float, float]:
     if again or not moved or best in (0, len(tried) - 1):
         return least, 0.0
     near = tried[best] + np.arange(-COARSE, COARSE + 1)
-    lag = STEP * int(near[np.argmin(_stays(one.measured, made, most, near, 1))])
+    close = _stays(_from(one.measured, most + near, len(made)), made, 1)
+    lag = STEP * int(near[np.argmin(close)])
     return least, lag if abs(lag) > LONGEST else 0.0
 
 
@@ -105,12 +103,15 @@ def _made_of(one: Comparison, run: Expectation) -> FloatArray:
     return np.stack(columns, axis=1)
 
 
-def _stays(
-    measured: FloatArray, made: FloatArray, most: int, lags: NDArray[np.int64], every: int
-) -> FloatArray:
-    """Return the part of a channel's power that stays at each lag, in steps of the grid."""
+def _from(measured: FloatArray, begins: NDArray[np.int64], count: int) -> FloatArray:
+    """Return so many readings from each of several steps of the grid on, one row each."""
+    return np.stack([measured[begin:][:count] for begin in begins.tolist()])
+
+
+def _stays(rows: FloatArray, made: FloatArray, every: int) -> FloatArray:
+    """Return the part of each row's power that stays of it, by every so many steps of the grid."""
     basis, _ = np.linalg.qr(made[::every] / np.maximum(np.abs(made).max(axis=0), 1e-300))
-    rows = np.stack([measured[most + lag :][: len(made)][::every] for lag in lags.tolist()])
+    rows = rows[:, ::every]
     rows = rows - rows.mean(axis=1, keepdims=True)
     whole = np.sum(rows**2, axis=1)
     told = np.sum((rows @ basis) ** 2, axis=1)
