@@ -222,19 +222,9 @@ def at_once(
     :param other: another one.
     :return: whether both are events that may be one, in the same recording.
     """
-    first, second = _span(*one), _span(*other)
-    if first is None or second is None:
+    first, second = (candidate.changes(values) for candidate, values in (one, other))
+    if not first or not second:
         return False
     if one[0].only != other[0].only and one[0].only and other[0].only:
         return False
-    return first[0] - AT_ONCE < second[1] and second[0] - AT_ONCE < first[1]
-
-
-def _span(candidate: Candidate, values: Mapping[str, float]) -> tuple[float, float] | None:
-    """Return begin and end of an event [s]; None of what lasts."""
-    begun = [values[p.name] for p in candidate.instants]
-    if not begun:
-        return None
-    return begun[0], begun[0] + sum(
-        values[p.name] for p in candidate.parameters if p.search == 'duration'
-    )
+    return first[0] - AT_ONCE < second[-1] and second[0] - AT_ONCE < first[-1]

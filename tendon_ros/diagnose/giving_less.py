@@ -94,11 +94,11 @@ def _torque_about(
         own = np.array([[m.sensor.channel == channel] for m in s.measured], dtype=np.bool_)
         then = np.zeros(len(s.time), dtype=np.bool_)
         for k in pushes:
-            values = state.model.values(k)
-            wider = WIDER * values['duration']
-            first, last = values['start'] - wider, values['start'] + values['duration'] + wider
-            acts = state.model.causes[k].acts_in(s.name)
-            then |= (first <= s.time) & (s.time <= last) & acts
+            cause = state.model.causes[k]
+            begun, ended = cause.changes(state.model.values(k))
+            wider = WIDER * (ended - begun)
+            near = (begun - wider <= s.time) & (s.time <= ended + wider)
+            then |= near & cause.acts_in(s.name)
         found.append(own.reshape(-1, 1) & then)
     return found
 

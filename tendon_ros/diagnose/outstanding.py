@@ -36,11 +36,10 @@ def stands_out_in_time(problem: Problem, without: Fit, state: Fit, event: Candid
     :return: whether: and no more once it is known.
     """
     values = state.model.values(state.model.causes.index(event))
-    [begun] = [values[p.name] for p in event.instants]
-    lasts = [values[p.name] for p in event.parameters if p.search == 'duration']
+    begun, *ended = event.changes(values)
     segments = problem.rollouts.segments
     happens = [
-        (s.time >= begun) & (s.time < begun + lasts[0] if lasts else True)
+        (s.time >= begun) & (s.time < ended[0] if ended else True)
         if event.acts_in(s.name)
         else np.zeros(len(s.time), dtype=np.bool_)
         for s in segments

@@ -95,6 +95,16 @@ class Candidate:
         """The parameters that are times of the recording."""
         return tuple(p for p in self.parameters if p.search == 'instant')
 
+    def changes(self, values: Values) -> tuple[float, ...]:
+        """
+        Return when an event sets in, and when it ends if it does.
+
+        :param values: of its parameters.
+        :return: times of the recording [s], in their order; none of what lasts.
+        """
+        switches = find(self.effect).switches
+        return switches(**values) if switches else ()
+
     @property
     def dry(self) -> bool:
         """Whether it is a dry friction, by whatever law."""

@@ -175,7 +175,7 @@ class Residuals:
         :param cause: an event, or one that has no ends.
         :param values: of its parameters.
         """
-        for instant in _instants(cause, values):
+        for instant in cause.changes(values):
             near = self._near(cause, instant)
             left[near] = np.clip(left[near], -2.0, 2.0)
 
@@ -326,10 +326,3 @@ class Residuals:
         :return: segment, channel, and its samples in the order of time.
         """
         return [(n, c, vector[span]) for n, c, span in self.spans()]
-
-
-def _instants(cause: Candidate, values: Mapping[str, float]) -> list[float]:
-    """Return when something suddenly changes."""
-    begun = [values[p.name] for p in cause.instants]
-    lasts = [values[p.name] for p in cause.parameters if p.search == 'duration']
-    return begun + [a + b for a in begun for b in lasts]

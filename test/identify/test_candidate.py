@@ -55,6 +55,14 @@ def test_withheld_everywhere_or_at_one_place(bench, channels):
     }
 
 
+def test_events_have_times_and_what_lasts_has_none():
+    push = Candidate('disturbance', 'pulley_2')
+    assert push.changes({'torque': 0.3, 'start': 4.0, 'duration': 1.5}) == (4.0, 5.5)
+    slip = Candidate('cable_slip', 'cable_L3')
+    assert slip.changes({'jump': 2e-4, 'time': 7.0}) == (7.0,)
+    assert Candidate('gravity', 'pulley_2').changes({'torque': 0.1, 'phase': 0.0}) == ()
+
+
 def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
     louder = [
         replace(c, value=20.0 * c.value)
