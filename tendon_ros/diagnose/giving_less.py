@@ -114,14 +114,14 @@ def _left_with_less(
     # what the torque is then must not bend the rest, which all else then still holds
     rest = problem.leaving_out(then).fitted(state.model.without(*gone), rounds=6)
     left = problem.left(rest.model)
-    for k in pushes:  # as it was beside the pushes
-        problem.forgive(left, state.model.causes[k], state.model.values(k))
     known = problem.predicted(rest.model)
     there = problem.sampled(then)
     time = problem.sampled([s.time for s in problem.rollouts.segments])
     for _, _, span in problem.spans():
         own = np.flatnonzero(there[span]) + span.start
         left[own] = _with_less(left[own], known[own], time[own])
+    for k in pushes:  # as it was beside the pushes
+        problem.forgive(left, state.model.causes[k], state.model.values(k))
     stays = float(left @ left)
     return stays if np.isfinite(stays) else np.inf
 

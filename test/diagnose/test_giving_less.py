@@ -21,8 +21,8 @@ WHEN = {'start': 1.5, 'duration': 1.2}
 def fitted_to(bench, measured_on, spoilt):
     """Return a way to fits of some causes to a recording of the bench."""
 
-    def fit(effects, causes, change=None):
-        runs = (measured_on(bench, *effects),)
+    def fit(effects, causes, change=None, **motion):
+        runs = (measured_on(bench, *effects, **motion),)
         runs = spoilt(runs, EFFORT, change) if change else runs
         ready = prepared(runs, bench)
         model = ready.problem.empty
@@ -47,6 +47,15 @@ def test_what_is_in_proportion_to_the_torque_is_no_push(fitted_to):
     found = Found(states=[empty, state], rivals=[[]], without=[empty])
     [weighed] = belief(ready, found).weighed
     assert weighed.chance <= IDLE
+
+
+def test_pushes_within_one_another_are_no_more(fitted_to):
+    """What a motor gives less has its own ends: those of the pushes excuse nothing before."""
+    within = {'torque': -0.1, 'start': 1.9, 'duration': 0.4}
+    begun = [(PUSH, {'torque': -0.5, **WHEN}), (PUSH, within)]
+    steady = {'trajectory': 'paper_fig12', 'settings': (), 'touching': True}
+    ready, state = fitted_to((), begun, dipped, **steady)
+    assert giving_less(ready.problem, state) == {0, 1}
 
 
 def test_who_helps_such_a_push_goes_with_it(fitted_to):
