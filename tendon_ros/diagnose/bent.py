@@ -40,6 +40,8 @@ SPENT = 1.5
 #: part of the widest knee of a torque limit, or of the bound of an amplitude, from which on it is
 #: as wide as it may be
 WIDE = 0.98
+#: part of the time in which a motor asks for less than it does at most
+REACHED = 0.99
 #: times its inertia that no body has by mistake
 OVER = 10.0
 #: events nearer to each other than this are one [s]
@@ -64,10 +66,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     held = HOLDS * problem.rollouts.instrument.control_period
     if candidate.effect == 'sensor_delay' and values['time'] < held:
         return True
-    # how much a motor gives of what it reports is known, or is another guess
-    if _is_wide(candidate, values) and not guesses_torque(
-        problem.rollouts.instrument, candidate.place.removeprefix('motor_')
-    ):
+    if _has_no_end(problem, candidate, values):
         return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them
@@ -95,6 +94,23 @@ def _is_tolerated(problem: Problem, candidate: Candidate, values: Mapping[str, f
         p.name in own and own[p.name].low < values[p.name] < own[p.name].high
         for p in candidate.parameters
     )
+
+
+def _has_no_end(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a limit only bends the torque of a motor, of which it is known.
+
+    While a ripple of that motor is not known yet, the knee of a true limit is as wide as it may be,
+    and yet the motor asked for more than ever passes.
+    """
+    if not _is_wide(candidate, values):
+        return False
+    motor = candidate.place.removeprefix('motor_')
+    # how much it gives of what it reports is another guess
+    if guesses_torque(problem.rollouts.instrument, motor):
+        return False
+    most = values['limit'] * (1.0 + values['knee'])
+    return problem.rollouts.reported(motor, REACHED) < most
 
 
 def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
