@@ -100,8 +100,8 @@ def _has_no_end(problem: Problem, candidate: Candidate, values: Mapping[str, flo
     """
     Return whether a limit only bends the torque of a motor, of which it is known.
 
-    While a ripple of that motor is not known yet, the knee of a true limit is as wide as it may be,
-    and yet the motor asked for more than ever passes.
+    While a ripple of that motor is not known yet, the knee of a true limit is as wide as it may
+    be, and yet the motor asks for more than ever passes.
     """
     if not _is_wide(candidate, values):
         return False
