@@ -42,6 +42,8 @@ EXACT = 1e-5
 #: part of what they do together that stays at most beside true ones, and times its power that
 #: these do each alone, all added up: what is made up of more may be close to anything
 CLOSELY, MADE_UP = 3e-3, 12.0
+#: part of what they do to the channel where they do most, as power, that is nothing in another one
+NOWHERE = 0.01
 #: causes from which on it is no chance that nothing is left of them in a channel
 CONSPIRING = 3
 #: part of what a cause does, as an amplitude, that guessed numbers cannot do as well
@@ -70,13 +72,14 @@ def undoing(problem: Problem, state: Fit) -> frozenset[int]:
 
 def _opposed(problem: Problem, state: Fit, changes: FloatArray) -> frozenset[int]:
     """Return the causes that undo each other by what they do, shape (causes, samples)."""
-    channels = problem.channels().values()
+    channels = problem.channels()
+    power = problem.structured_by_channel(state.left)
+    stays = [power[name][0] if name in power else 0.0 for name in channels]
     happened = np.array([bool(cause.instants) for cause in state.model.causes])
     found: frozenset[int] = frozenset()
-    stays = problem.structured(state.left) * changes.shape[1]
     for alike in (happened, ~happened):
-        among = changes * alike[:, None]
-        found |= undone(among, stays) | conspiring([among[:, samples] for samples in channels])
+        among = [(changes * alike[:, None])[:, samples] for samples in channels.values()]
+        found |= undone(among, stays) | conspiring(among)
     return found
 
 
@@ -139,22 +142,28 @@ def _guessed(problem: Problem, state: Fit) -> NDArray[np.intp]:
     return np.asarray(state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed))
 
 
-def undone(changes: FloatArray, stays: float = math.inf) -> frozenset[int]:
+def undone(channels: Sequence[FloatArray], stays: Sequence[float]) -> frozenset[int]:
     """
-    Return which of several changes mostly undo each other.
+    Return which of several causes mostly undo each other.
 
-    :param changes: what each cause does to each sample, shape (causes, samples).
-    :param stays: what all of them leave, as a sum of squares.
-    :return: the rows of changes that are opposed to others of them, where little of them stays
-        that would be any better than they are large.
+    :param channels: of each channel what each cause does to its samples, in noise deviations,
+        shape (causes, samples).
+    :param stays: what all of them leave of each channel, as a sum of squares.
+    :return: the causes that are opposed to others of them, where little of them stays that would
+        be any better than they are large.
     """
+    changes = np.concatenate(channels, axis=1)
     hushed = _undone(changes, HUSHED)
     little = []
     for members in _undone(changes, UNDONE):
-        among = changes[list(members)]
-        alone, together = float(np.sum(among**2)), float(np.sum(among.sum(axis=0) ** 2))
-        close = stays <= CLOSELY * together and alone < MADE_UP * together
-        if stays > EXACT * alone and not close:
+        own = list(members)
+        alone = float(np.sum(changes[own] ** 2))
+        together = float(np.sum(changes[own].sum(axis=0) ** 2))
+        # what others leave where these do nothing says nothing of them
+        does = np.array([np.mean(c[own] ** 2) if c.size else 0.0 for c in channels])
+        left = float(np.sum(np.asarray(stays)[does > NOWHERE * does.max()]))
+        close = left <= CLOSELY * together and alone < MADE_UP * together
+        if left > EXACT * alone and not close:
             little.append(members)
     return frozenset().union(*hushed, *little)
 

@@ -1,6 +1,7 @@
 """Large effects whose small difference imitates another one are no causes."""
 
 from dataclasses import replace
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -38,7 +39,7 @@ OTHER = np.cos(np.linspace(0.0, 31.0, 400))
     ],
 )
 def test_little_stays_of_what_is_undone(changes, rows):
-    assert undone(np.array(changes)) == set(rows)
+    assert undone([np.array(changes)], [math.inf]) == set(rows)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,10 @@ def test_little_stays_of_what_is_undone(changes, rows):
 )
 def test_opposed_causes_that_leave_nothing_are_believed(shrinks, stays, rows):
     changes = np.array([100.0 * WAVE, shrinks * 100.0 * OTHER - 100.0 * WAVE])
-    assert undone(changes, stays * float(np.sum(changes**2))) == rows
+    left = stays * float(np.sum(changes**2))
+    assert undone([changes], [left]) == rows
+    # nor does it matter what others leave of a channel that these two do nothing to
+    assert undone([changes, np.zeros((2, 400))], [left, 1e6 * left]) == rows
 
 
 @pytest.mark.parametrize(
@@ -132,8 +136,8 @@ def made_up(causes):
         model=SimpleNamespace(causes=causes), left=WAVE, slope=np.zeros((len(WAVE), 0))
     )
     problem = SimpleNamespace(
-        channels=dict,
-        structured=lambda left: float(np.mean(left**2)),
+        channels=lambda: {'torque': np.ones(len(WAVE), dtype=np.bool_)},
+        structured_by_channel=lambda left: {'torque': (float(left @ left), len(left))},
         tolerances=(),
         prior=lambda _model: np.zeros(0),
     )
