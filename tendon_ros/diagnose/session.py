@@ -217,9 +217,13 @@ def _searched(
 ) -> tuple[Prepared, Found]:
     """Search, and on where noise, or blocks that were held out, held something to be found."""
 
-    def search(begun: Model | None, kept: Memory | None = None) -> Found:
+    def search(
+        begun: Model | None,
+        kept: Memory | None = None,
+        among: Sequence[Candidate] = candidates,
+    ) -> Found:
         held = ready.held
-        return Search(ready.problem, candidates, jobs, report, kept, begun, patience, held).run()
+        return Search(ready.problem, among, jobs, report, kept, begun, patience, held).run()
 
     by = memory.weighed() if memory else None
     ready = ready.weighed(by) if by is not None else ready
@@ -247,6 +251,15 @@ def _searched(
             other = search(begun.model)
             if other.final.cost < GAINED * found.final.cost:
                 found = other
+    # whatever happened, a push explains most of what it left for a while, and what else is found
+    # beside it is not what is there
+    happened = {(c.effect, c.place) for c in found.final.model.causes if c.instants}
+    if happened and _leaves_much(ready, found, patience):
+        report('looking again: without what was taken for an event', 0.0)
+        others = [c for c in candidates if (c.effect, c.place) not in happened]
+        other = search(None, among=others)
+        if other.final.cost < GAINED * found.final.cost:
+            found = search(other.final.model)
     again = ready.heard_again(found.final.model)
     # what stands in for something unknown may take noise away as well, and tells no more
     if again.quieter(ready) and _worth_more(ready, found, patience):
@@ -268,6 +281,12 @@ def _searched(
         ready = ready.loosened(wider.looser)
         found = search(known)
     return ready, found
+
+
+def _leaves_much(ready: Prepared, found: Found, patience: Patience) -> bool:
+    """Return whether more stays of a bench than its laws can be wrong by, and there is time."""
+    beyond = beyond_laws(ready.problem, found.start, found.final)
+    return beyond and not ready.problem.by_misfit and not patience.late
 
 
 def _worth_more(ready: Prepared, found: Found, patience: Patience) -> bool:
