@@ -40,8 +40,6 @@ SPENT = 1.5
 #: part of the widest knee of a torque limit, or of the bound of an amplitude, from which on it is
 #: as wide as it may be
 WIDE = 0.98
-#: part of the time in which a motor asks for less than it does at most
-REACHED = 0.99
 #: times its inertia that no body has by mistake
 OVER = 10.0
 #: events nearer to each other than this are one [s]
@@ -57,16 +55,13 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
         a delay that a controller's hold makes, a ripple of which not half a wave was
-        seen, friction that never yields, a limit without an end where the torque is known, a
-        number of the file within its tolerance.
+        seen, friction that never yields, a number of the file within its tolerance.
     """
     if _is_tolerated(problem, candidate, values):
         return True
     # a controller holds its torque for a period, on average half of one too long
     held = HOLDS * problem.rollouts.instrument.control_period
     if candidate.effect == 'sensor_delay' and values['time'] < held:
-        return True
-    if _has_no_end(problem, candidate, values):
         return True
     longest = max(float(s.time[-1]) for s in problem.rollouts.segments)
     # what has been there from the first in one of several recordings happened between them
@@ -96,21 +91,17 @@ def _is_tolerated(problem: Problem, candidate: Candidate, values: Mapping[str, f
     )
 
 
-def _has_no_end(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+def has_no_end(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
     Return whether a limit only bends the torque of a motor, of which it is known.
 
-    While a ripple of that motor is not known yet, the knee of a true limit is as wide as it may
-    be, and yet the motor asks for more than ever passes.
+    :param problem: the data.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether; how much a motor of unknown torque gives of what it reports is another guess.
     """
-    if not _is_wide(candidate, values):
-        return False
     motor = candidate.place.removeprefix('motor_')
-    # how much it gives of what it reports is another guess
-    if guesses_torque(problem.rollouts.instrument, motor):
-        return False
-    most = values['limit'] * (1.0 + values['knee'])
-    return problem.rollouts.reported(motor, REACHED) < most
+    return _is_wide(candidate, values) and not guesses_torque(problem.rollouts.instrument, motor)
 
 
 def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:

@@ -1,14 +1,16 @@
 """
 Torque limits that excuse: nearly all torques pass them, and no motion tells what those were.
 
-A fit lowers a limit to have ever more excused, until it means nothing. None comes in like that
-but where all others leave ten times as much.
+A fit lowers a limit to have ever more excused, until it means nothing, or lets it set in so early
+that it bends all of a motor's torques. None comes in like that but where all others leave ten
+times as much.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tendon_ros.diagnose.bent import has_no_end
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
@@ -24,7 +26,7 @@ ABOVE = 1.05
 
 def excuses(problem: Problem, model: Model, k: int) -> bool:
     """
-    Return whether a cause is a torque limit that nearly all torques pass.
+    Return whether a cause is a torque limit that nearly all torques pass, or that bends them all.
 
     One that is there may sink while others join, since it may stand for a motor that gives way
     otherwise than by any limit. It is no cause then, but what joins would not be seen without it.
@@ -37,7 +39,8 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     cause = model.causes[k]
     if cause.effect != 'torque_saturation':
         return False
-    return model.values(k)['limit'] < _usual(problem, model, cause)
+    values = model.values(k)
+    return has_no_end(problem, cause, values) or values['limit'] < _usual(problem, model, cause)
 
 
 def _usual(problem: Problem, model: Model, limit: Candidate) -> float:
@@ -56,8 +59,9 @@ def raised(problem: Problem, model: Model) -> Model:
     """
     found = model
     for cause in sorted(excused(problem, model)):
+        limit = model.values(model.causes.index(cause))['limit']
         values = dict(find(cause.effect).typical) | {
-            'limit': ABOVE * _usual(problem, model, cause)
+            'limit': max(limit, ABOVE * _usual(problem, model, cause))
         }
         found = found.without(found.causes.index(cause)).joined(cause, values)
     return found

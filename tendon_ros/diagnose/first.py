@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.everywhere import thinned_out
+from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.guesses import astray, better, far_off
 from tendon_ros.diagnose.rounds import MOST, Round
 from tendon_ros.diagnose.steps import Steps
@@ -99,6 +100,9 @@ class FirstRound:
         # what is there or not shows only once the guesses have followed
         for asked in (proposals, [p for p in proposals if not p.sizes]):
             alone = self._usual.alone(file, asked)
-            if alone is not None and self._usual.believes(self._start, alone):
+            # an excuse has to be better than all others, and few are asked here
+            if alone is None or excused(self.problem, alone.model):
+                continue
+            if self._usual.believes(self._start, alone):
                 grown = better(self.problem, grown, alone)
         return grown

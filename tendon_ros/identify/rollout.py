@@ -128,18 +128,9 @@ class Rollouts:
         :param gain: of its torque by the reported one.
         :return: [N m]; 0 where it reported nothing.
         """
-        return abs(gain) * self.reported(motor, usual_part(self.instrument, motor))
-
-    def reported(self, motor: str, part: float) -> float:
-        """
-        Return the torque that a motor reported for a part of the time, or less.
-
-        :param motor: its name.
-        :param part: 0 to 1, of all recordings.
-        :return: [N m], of either sign; 0 where it reported nothing.
-        """
-        torques = self._torques.get(motor, np.zeros(0))
-        return float(np.quantile(np.abs(torques), part)) if torques.size else 0.0
+        reported = self._torques.get(motor, np.zeros(0))
+        part = usual_part(self.instrument, motor)
+        return float(np.quantile(np.abs(gain * reported), part)) if reported.size else 0.0
 
     def predicted(
         self, uses: Sequence[Sequence[EffectUse]], asked: Sequence[bool] | None = None

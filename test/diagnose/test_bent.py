@@ -40,11 +40,6 @@ LOAD = (Candidate('tension_friction', 'pulley_3'), {'coefficient': 0.1})
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 20.0}, True),
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 2.0}, False),
         ('joint_spring', 'pulley_3', {'stiffness': 0.01, 'rest': 20.0}, False),
-        # a limit that never cuts anything off is none where the torque is known
-        ('torque_saturation', 'motor_M', {'limit': 5.0, 'knee': 0.6}, True),
-        ('torque_saturation', 'motor_M', {'limit': 5.0, 'knee': 0.4}, False),
-        # one that cuts off what the motor asks for may have got its knee from something else
-        ('torque_saturation', 'motor_M', {'limit': 1.0, 'knee': 0.6}, False),
     ],
 )
 def test_what_is_no_cause(sound_problem, effect, place, values, bent):

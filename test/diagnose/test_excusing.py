@@ -1,6 +1,7 @@
 """Torque limits that excuse: what they are, what may not come beside them, and the way back up."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,6 +11,7 @@ from tendon_ros.diagnose.excusing import (
     needs_excuse,
     raised,
 )
+from tendon_ros.diagnose.first import FirstRound
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
@@ -45,6 +47,18 @@ def test_a_limit_that_nearly_all_torques_pass_is_none(sound_problem, limit, sunk
     model = model.joined(Candidate('coulomb_friction', 'pulley_M'), {'torque': 0.1})
     limits = {Candidate('torque_saturation', 'motor_M')} if sunk else set()
     assert excused(sound_problem, model) == limits
+
+
+@pytest.mark.parametrize(('knee', 'bends'), [(0.6, True), (0.4, False)])
+def test_a_limit_that_bends_all_torques_is_none_where_they_are_known(sound_problem, knee, bends):
+    """A ripple that is not told yet gives a true limit such a knee: so it may come in with it."""
+    limit = Candidate('torque_saturation', 'motor_M')
+    model = sound_problem.empty.joined(limit, {'limit': 1.0, 'knee': knee})
+    assert excuses(sound_problem, model, 0) is bends
+    again = raised(sound_problem, model)
+    assert again.values(0)['limit'] == 1.0
+    assert again.values(0)['knee'] <= knee
+    assert not excuses(sound_problem, again, 0)
 
 
 @pytest.mark.parametrize(('place', 'limit', 'needs'), [
@@ -117,3 +131,18 @@ def test_a_limit_that_sank_finds_its_way_up(half_cut):
     state = Steps(problem, [CUT], 1, lambda *_: None).raised(sunk)
     assert state.cost < sunk.cost
     assert not excuses(problem, state.model, 0)
+
+
+@pytest.mark.parametrize(
+    ('values', 'comes'), [(SUNK, False), ({'limit': 0.06, 'knee': 0.05}, True)]
+)
+def test_an_excuse_is_not_taken_where_few_are_asked(half_cut, values, comes):
+    """Without any size only signs are asked, beside which it is no merit to leave little."""
+    problem, start = half_cut
+    alone = problem.fitted(problem.begun.joined(CUT, values), rounds=0)
+    usual = SimpleNamespace(
+        grown=lambda *_: None, alone=lambda *_: alone, believes=lambda *_: True
+    )
+    steps = Steps(problem, [CUT], 1, lambda *_: None)
+    found = FirstRound(steps, start, usual, {})._from_the_file()
+    assert (found is alone) is comes
