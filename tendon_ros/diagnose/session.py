@@ -284,7 +284,7 @@ def _searched(
 
 
 def _leaves_much(ready: Prepared, found: Found, patience: Patience) -> bool:
-    """Return whether more stays of a bench than its laws can be wrong by, and there is time."""
+    """Return whether more stays than laws can be wrong by, beside the noise, and there is time."""
     beyond = beyond_laws(ready.problem, found.start, found.final)
     return beyond and not ready.problem.by_misfit and not patience.late
 
