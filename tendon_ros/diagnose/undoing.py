@@ -75,11 +75,13 @@ def _opposed(problem: Problem, state: Fit, changes: FloatArray) -> frozenset[int
     channels = problem.channels()
     power = problem.structured_by_channel(state.left)
     stays = [power[name][0] if name in power else 0.0 for name in channels]
+    # guesses go where all channels together want them
+    tied = any(t.guessed for t in problem.tolerances)
     happened = np.array([bool(cause.instants) for cause in state.model.causes])
     found: frozenset[int] = frozenset()
     for alike in (happened, ~happened):
         among = [(changes * alike[:, None])[:, samples] for samples in channels.values()]
-        found |= undone(among, stays) | conspiring(among)
+        found |= undone(among, stays, tied=tied) | conspiring(among)
     return found
 
 
@@ -142,13 +144,18 @@ def _guessed(problem: Problem, state: Fit) -> NDArray[np.intp]:
     return np.asarray(state.slope.shape[1] - len(guessed) + np.flatnonzero(guessed))
 
 
-def undone(channels: Sequence[FloatArray], stays: Sequence[float]) -> frozenset[int]:
+def undone(
+    channels: Sequence[FloatArray], stays: Sequence[float], *, tied: bool = False
+) -> frozenset[int]:
     """
     Return which of several causes mostly undo each other.
+
+    What others leave where these do nothing says nothing of them.
 
     :param channels: of each channel what each cause does to its samples, in noise deviations,
         shape (causes, samples).
     :param stays: what all of them leave of each channel, as a sum of squares.
+    :param tied: whether what is wrong in one channel shows in all others.
     :return: the causes that are opposed to others of them, where little of them stays that would
         be any better than they are large.
     """
@@ -159,9 +166,9 @@ def undone(channels: Sequence[FloatArray], stays: Sequence[float]) -> frozenset[
         own = list(members)
         alone = float(np.sum(changes[own] ** 2))
         together = float(np.sum(changes[own].sum(axis=0) ** 2))
-        # what others leave where these do nothing says nothing of them
         does = np.array([np.mean(c[own] ** 2) if c.size else 0.0 for c in channels])
-        left = float(np.sum(np.asarray(stays)[does > NOWHERE * does.max()]))
+        there = (does > NOWHERE * does.max()) | tied
+        left = float(np.sum(np.asarray(stays)[there]))
         close = left <= CLOSELY * together and alone < MADE_UP * together
         if left > EXACT * alone and not close:
             little.append(members)

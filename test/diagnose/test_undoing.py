@@ -60,7 +60,10 @@ def test_opposed_causes_that_leave_nothing_are_believed(shrinks, stays, rows):
     left = stays * float(np.sum(changes**2))
     assert undone([changes], [left]) == rows
     # nor does it matter what others leave of a channel that these two do nothing to
-    assert undone([changes, np.zeros((2, 400))], [left, 1e6 * left]) == rows
+    elsewhere = [changes, np.zeros((2, 400))], [left, 1e6 * left]
+    assert undone(*elsewhere) == rows
+    # but by guessed numbers all channels hang together
+    assert undone(*elsewhere, tied=True) == {0, 1}
 
 
 @pytest.mark.parametrize(
