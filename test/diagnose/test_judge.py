@@ -115,9 +115,10 @@ def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believe
     assert (chance(ready, found, 0, signs) > IDLE) is believed
 
 
-def test_the_law_beside_is_that_of_the_others_at_the_place(ready):
-    viscous = ('viscous_friction', 'pulley_3', {'damping': 0.05})
-    bias = ('torque_bias', 'motor_M', {'torque': 0.01})
+def test_the_law_beside_is_that_of_the_others_at_the_place(bench, measured_on):
+    viscous = ('viscous_friction', 'pulley_3', {'damping': 0.5})
+    bias = ('torque_bias', 'motor_M', {'torque': 0.05})
+    ready = prepared([measured_on(bench, FRICTION, viscous, bias)], bench)
     found = found_with(ready.problem, FRICTION, viscous, bias)
     left = stays(ready, found.final)
     of = [signs_beside(ready.problem, found, without, left) for without in found.without]
