@@ -19,7 +19,6 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
-from tendon_ros.identify.untold import guesses_torque
 from tendon_ros.identify.waves import shows, travel
 
 #: periods of the controllers within which a delay is theirs
@@ -91,19 +90,6 @@ def _is_tolerated(problem: Problem, candidate: Candidate, values: Mapping[str, f
     )
 
 
-def has_no_end(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
-    """
-    Return whether a limit only bends the torque of a motor, of which it is known.
-
-    :param problem: the data.
-    :param candidate: an effect.
-    :param values: of its parameters.
-    :return: whether; how much a motor of unknown torque gives of what it reports is another guess.
-    """
-    motor = candidate.place.removeprefix('motor_')
-    return _is_wide(candidate, values) and not guesses_torque(problem.rollouts.instrument, motor)
-
-
 def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
     Return whether a delay may be that of a logger, which is no fault of the sensor.
@@ -166,7 +152,7 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
     :param values: of its parameters.
     :return: whether.
     """
-    return _is_wide(candidate, values) or at_bound(candidate, values)
+    return is_wide(candidate, values) or at_bound(candidate, values)
 
 
 def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -192,8 +178,14 @@ def _is_at_bound(parameter: Parameter, value: float) -> bool:
     return ends and abs(value) > WIDE * parameter.high
 
 
-def _is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:
-    """Return whether a limit sets in long before anything is cut off."""
+def is_wide(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a limit sets in long before anything is cut off.
+
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
     return candidate.effect == 'torque_saturation' and any(
         values[p.name] > WIDE * p.high for p in candidate.parameters if p.name == 'knee'
     )

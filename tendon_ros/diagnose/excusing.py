@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tendon_ros.diagnose.bent import has_no_end
+from tendon_ros.diagnose.bent import is_wide
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
+from tendon_ros.identify.untold import guesses_torque
 
 #: part of what all others leave that an excuse may leave which comes in
 EXCUSED = 0.1
@@ -40,7 +41,10 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     if cause.effect != 'torque_saturation':
         return False
     values = model.values(k)
-    return has_no_end(problem, cause, values) or values['limit'] < _usual(problem, model, cause)
+    # how much a motor gives of what it reports is known, or is another guess
+    motor = cause.place.removeprefix('motor_')
+    known = not guesses_torque(problem.rollouts.instrument, motor)
+    return (known and is_wide(cause, values)) or values['limit'] < _usual(problem, model, cause)
 
 
 def _usual(problem: Problem, model: Model, limit: Candidate) -> float:
