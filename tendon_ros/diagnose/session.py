@@ -14,16 +14,13 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.alike import leaning
-from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, SCALING, weak_words
-from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
-from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps
 from tendon_ros.diagnose.held import as_set
@@ -32,20 +29,18 @@ from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.locate import whereabouts
+from tendon_ros.diagnose.looks import Looks
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, strained, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.patience import Patience, USUAL
-from tendon_ros.diagnose.prepare import Prepared, prepared
+from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
-from tendon_ros.diagnose.search import GAINED, Search
-from tendon_ros.diagnose.spread import known_words, loose
-from tendon_ros.diagnose.unexplained import left_over, surprising
-from tendon_ros.diagnose.worth import beyond_laws, hopeless, worthwhile
-from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.diagnose.spread import known_words
+from tendon_ros.diagnose.unexplained import left_over
+from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque, with_encoders
-from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
 
@@ -56,7 +51,6 @@ ASTRAY = (
     'the numbers of the file are left as they are: moved within their tolerances to what nothing '
     'explains, they foretell what was held out worse than the file does'
 )
-LOOSENED = 2  # times that the numbers of a file may turn out to be less well known than supposed
 
 
 @dataclass(frozen=True)
@@ -109,7 +103,7 @@ def diagnose(
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds, ready.problem.rollouts.effort)
     ready = leaning(ready, candidates, report)
-    ready, found = _searched(ready, candidates, jobs, report, memory, patience)
+    ready, found = Looks(ready, candidates, jobs, report, memory, patience).taken()
     problem = ready.problem
     report('judging', 0.85)
     held = belief(ready, found)
@@ -205,90 +199,3 @@ def diagnose(
     )
     report('done', 1.0)
     return Outcome(diagnosis, evidence, repaired, held.weighed)
-
-
-def _searched(
-    ready: Prepared,
-    candidates: Sequence[Candidate],
-    jobs: int,
-    report: Report,
-    memory: Memory | None,
-    patience: Patience,
-) -> tuple[Prepared, Found]:
-    """Search, and on where noise, or blocks that were held out, held something to be found."""
-
-    def search(
-        begun: Model | None,
-        kept: Memory | None = None,
-        among: Sequence[Candidate] = candidates,
-    ) -> Found:
-        held = ready.held
-        return Search(ready.problem, among, jobs, report, kept, begun, patience, held).run()
-
-    by = memory.weighed() if memory else None
-    ready = ready.weighed(by) if by is not None else ready
-    found = search(by, memory)
-    if found.unweighed is not None:
-        report('looking again: channels weigh by what stays of them', 0.0)
-        by = found.unweighed.model
-        ready = ready.weighed(by)
-        if memory is not None:
-            memory.weigh(by)
-        found = search(by, memory)
-    for sign in signless(ready.problem, candidates):
-        # guesses go far to do without a sign, and what is found beside them imitates it: so it is
-        # asked alone. Beside a constant torque next to nothing turns round: there it comes last
-        first, last = (found.start, ready.problem.begun), (found.final, found.final.model)
-        for before, model in (first, last):
-            imitated = beyond_laws(ready.problem, found.start, found.final)
-            if not imitated or sign in found.final.model.causes or patience.over:
-                break
-            begun = ready.problem.fitted(lost(model, sign))
-            # begun with a sign that nobody needs, a search would only do the same again
-            if not worthwhile(ready.problem, found.start, before, begun):
-                continue
-            report('looking again: a sensor may have lost its sign', 0.0)
-            other = search(begun.model)
-            if other.final.cost < GAINED * found.final.cost:
-                found = other
-    # whatever happened, a push explains most of what it left for a while, and what else is found
-    # beside it is not what is there
-    happened = {(c.effect, c.place) for c in found.final.model.causes if c.instants}
-    if happened and _leaves_much(ready, found, patience):
-        report('looking again: without what was taken for an event', 0.0)
-        others = [c for c in candidates if (c.effect, c.place) not in happened]
-        other = search(None, among=others)
-        if other.final.cost < GAINED * found.final.cost:
-            found = search(other.final.model)
-    again = ready.heard_again(found.final.model)
-    # what stands in for something unknown may take noise away as well, and tells no more
-    if again.quieter(ready) and _worth_more(ready, found, patience):
-        report('looking again: what was taken for noise was not', 0.0)
-        ready = again
-        found = search(found.final.model)
-    # what stands in for something unknown foretells nothing, wherever one looks
-    if surprising(ready, found) and _worth_more(ready, found, patience):
-        report('looking again: something happened in what was held out', 0.0)
-        ready = ready.moved(KEPT // 2)
-        found = search(found.final.model)
-    # numbers are no causes where the file's others are off as far
-    for _ in range(LOOSENED):
-        wider = None if patience.over else loose(ready, found)
-        if wider is None:
-            break
-        report('looking again: the numbers of the file are not that well known', 0.0)
-        known = wider.begun(ready, found)
-        ready = ready.loosened(wider.looser)
-        found = search(known)
-    return ready, found
-
-
-def _leaves_much(ready: Prepared, found: Found, patience: Patience) -> bool:
-    """Return whether more stays than laws can be wrong by, beside the noise, and there is time."""
-    beyond = beyond_laws(ready.problem, found.start, found.final)
-    return beyond and not ready.problem.by_misfit and not patience.late
-
-
-def _worth_more(ready: Prepared, found: Found, patience: Patience) -> bool:
-    """Return whether another search may tell more, and there is time for it."""
-    return not patience.over and not hopeless(ready.problem, found.start, found.final)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tendon_ros.diagnose import session
+from tendon_ros.diagnose import looks
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
@@ -22,7 +22,7 @@ def slipped(bench, measured_on):
 
 
 @pytest.mark.parametrize(
-    ('first', 'second', 'ends', 'looks'),
+    ('first', 'second', 'ends', 'again'),
     [
         (PUSH, SLIP, SLIP, True),
         # no better without it
@@ -31,7 +31,7 @@ def slipped(bench, measured_on):
         (SLIP, None, SLIP, False),
     ],
 )
-def test_a_push_that_leaves_much_is_done_without(slipped, monkeypatch, first, second, ends, looks):
+def test_a_push_that_leaves_much_is_done_without(slipped, monkeypatch, first, second, ends, again):
     ready, candidates = slipped
     said, asked = [], []
 
@@ -53,10 +53,10 @@ def test_a_push_that_leaves_much_is_done_without(slipped, monkeypatch, first, se
             fits = [self.problem.fitted(one) for one in (self.problem.begun, model)]
             return Found(states=fits)
 
-    monkeypatch.setattr(session, 'Search', Searching)
-    _, found = session._searched(
+    monkeypatch.setattr(looks, 'Search', Searching)
+    _, found = looks.Looks(
         ready, candidates, 1, lambda what, _done: said.append(what), None, Patience(600.0)
-    )
+    ).taken()
     assert [(c.effect, c.place) for c in found.final.model.causes] == [ends[:2]]
-    assert (SAID in said) is looks
-    assert (asked[0] - asked[1] == {PUSH[:2]}) if looks else len(asked) == 1
+    assert (SAID in said) is again
+    assert (asked[0] - asked[1] == {PUSH[:2]}) if again else len(asked) == 1

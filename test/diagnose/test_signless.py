@@ -7,12 +7,13 @@ import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.blind.case import made, Settings
-from tendon_ros.diagnose import session
+from tendon_ros.diagnose import looks
 from tendon_ros.diagnose.asking import lost, may_be_signless
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
+from tendon_ros.diagnose.session import diagnose
 from tendon_ros.diagnose.worth import beyond_laws
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -83,9 +84,9 @@ def test_a_ripple_has_its_period_beside_a_lost_sign(axis, recorded):
     assert begun[0][1]['cycles'] == pytest.approx(24.0, abs=1.0)
 
 
-@pytest.mark.parametrize(('right', 'looks'), [(False, True), (True, False)])
+@pytest.mark.parametrize(('right', 'again'), [(False, True), (True, False)])
 def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
-    axis, recorded, monkeypatch, right, looks
+    axis, recorded, monkeypatch, right, again
 ):
     run = recorded(SPRING, LOST)
     ready = prepared([run], axis)
@@ -109,13 +110,13 @@ def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
             fits = [self.problem.fitted(one) for one in (self.problem.begun, model)]
             return Found(states=fits)
 
-    monkeypatch.setattr(session, 'Search', Searching)
+    monkeypatch.setattr(looks, 'Search', Searching)
     candidates = everyone(axis, sorted(run.channels))
-    _, found = session._searched(
+    _, found = looks.Looks(
         ready, candidates, 1, lambda what, _done: said.append(what), None, Patience(600.0)
-    )
+    ).taken()
     assert SIGN in found.final.model.causes
-    assert ('looking again: a sensor may have lost its sign' in said) is looks
+    assert ('looking again: a sensor may have lost its sign' in said) is again
     assert begun_from[0] is None
 
 
@@ -137,11 +138,13 @@ def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
             start = self.problem.fitted(self.problem.begun)
             return Found(states=[start, self.problem.fitted(model, rounds=0)])
 
-    monkeypatch.setattr(session, 'Search', Searching)
-    monkeypatch.setattr(session, 'signless', lambda *_: [SIGN])
+    monkeypatch.setattr(looks, 'Search', Searching)
+    monkeypatch.setattr(looks, 'signless', lambda *_: [SIGN])
     found = Searching(ready.problem).run()
     assert beyond_laws(ready.problem, found.start, found.final)
-    session._searched(ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience())
+    looks.Looks(
+        ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience()
+    ).taken()
     assert 'looking again: a sensor may have lost its sign' not in said
 
 
@@ -152,7 +155,7 @@ def test_a_lost_sign_hides_no_friction_from_the_search():
     )
     case = made(650, 3, settings)
     runs = [case.recordings[name] for name in ('fast', 'slow')]
-    found = session.diagnose(runs, case.instrument, withhold=BESIDE, jobs=1, plan=False)
+    found = diagnose(runs, case.instrument, withhold=BESIDE, jobs=1, plan=False)
     told = {(c.effect, c.place) for c in found.diagnosis.causes}
     assert told == {(e['effect'], e['place']) for e in case.label['effects']}
     assert len(told) == 3
@@ -178,14 +181,14 @@ def test_a_sign_is_asked_beside_what_was_found_without_it(axis, recorded, monkey
             model = model.joined(Candidate(*bias[:2]), bias[2])
             return Found(states=[self.problem.fitted(m) for m in (self.problem.begun, model)])
 
-    monkeypatch.setattr(session, 'Search', Searching)
-    _, found = session._searched(
+    monkeypatch.setattr(looks, 'Search', Searching)
+    _, found = looks.Looks(
         prepared([run], axis),
         everyone(axis, sorted(run.channels)),
         1,
         lambda *_: None,
         None,
         Patience(600.0),
-    )
+    ).taken()
     assert set(found.final.model.causes) == {SIGN, Candidate(*bias[:2])}
     assert begun_from[-1] == set(found.final.model.causes)
