@@ -142,9 +142,7 @@ def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
     monkeypatch.setattr(looks, 'signless', lambda *_: [SIGN])
     found = Searching(ready.problem).run()
     assert beyond_laws(ready.problem, found.start, found.final)
-    looks.Looks(
-        ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience()
-    ).taken()
+    looks.Looks(ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience()).taken()
     assert 'looking again: a sensor may have lost its sign' not in said
 
 
