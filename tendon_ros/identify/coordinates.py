@@ -71,10 +71,7 @@ class Coordinates:
             for p, axis, place in zip(self._parameters, self.axes, z, strict=True)
         }
         if self._kind:
-            along, across = (
-                begun + self._scale * z[n]
-                for begun, n in zip(self._origin, (self._size, self._shape), strict=True)
-            )
+            along, across = self._pair(z)
             farthest = self._parameters[self._shape].high
             pair = (
                 _polar(along, across) if self._kind == 'phase' else _rest(along, across, farthest)
@@ -95,22 +92,45 @@ class Coordinates:
             axis.place(values[p.name]) for p, axis in zip(self._parameters, self.axes, strict=True)
         ]
         if self._kind:
-            found[self._size], found[self._shape] = (
-                (part - begun) / self._scale
-                for part, begun in zip(self._parts(values), self._origin, strict=True)
-            )
+            found[self._size], found[self._shape] = self._places(*self._parts(values))
         return tuple(found)
 
     def within(self, z: Sequence[float]) -> tuple[float, ...]:
         """
-        Return the places of what places stand for: a spring that rests too far is a stiffer one.
+        Return the places of what places stand for.
 
-        From there a derivative tells of both its stiffness and its rest.
+        A spring that rests too far is a stiffer one, and an amplitude has an end in whatever
+        phase: beyond, a derivative would tell nothing of the way back.
 
         :param z: places on the axes.
         :return: places.
         """
-        return self.place(self.values(z)) if self._kind == 'rest' else tuple(z)
+        if self._kind == 'rest':
+            return self.place(self.values(z))
+        if self._kind == 'phase':
+            return self._within_reach(z)
+        return tuple(z)
+
+    def _within_reach(self, z: Sequence[float]) -> tuple[float, ...]:
+        """Return places of which the amplitude is within its bounds, in phase as they are."""
+        along, across = self._pair(z)
+        end = self._parameters[self._size].high
+        if math.hypot(along, across) <= end:
+            return tuple(z)
+        along = min(max(along, -end), end)
+        across = math.copysign(math.sqrt(end**2 - along**2), across)
+        found = list(z)
+        found[self._size], found[self._shape] = self._places(along, across)
+        return tuple(found)
+
+    def _pair(self, z: Sequence[float]) -> tuple[float, float]:
+        """Return what places make along and across."""
+        along, across = self._origin
+        return along + self._scale * z[self._size], across + self._scale * z[self._shape]
+
+    def _places(self, along: float, across: float) -> tuple[float, float]:
+        """Return the places of what is along and across."""
+        return (along - self._origin[0]) / self._scale, (across - self._origin[1]) / self._scale
 
     def _parts(self, values: Mapping[str, float]) -> tuple[float, float]:
         """Return what a size and its phase, or its rest, make along and across."""

@@ -39,6 +39,7 @@ class Descent:
     :param likely: from where deviations count, shape (unknowns,).
     :param bounds: of the unknowns, shape (unknowns, 2).
     :param still: which do not move, shape (unknowns,).
+    :param within: of unknowns that no bound tells to be out of reach, the nearest ones within.
     """
 
     def __init__(
@@ -48,12 +49,14 @@ class Descent:
         likely: FloatArray,
         bounds: FloatArray,
         still: NDArray[np.bool_],
+        within: Callable[[FloatArray], FloatArray] = lambda x: x,
     ) -> None:
         self._left = left
         self._prior = prior
         self._likely = likely
         self._bounds = bounds
         self._still = still
+        self._within = within
         self._damping = 1e-3
 
     def at(self, x: FloatArray) -> Place:
@@ -97,7 +100,7 @@ class Descent:
             way[free] = np.linalg.solve(
                 (normal + damping * scale)[np.ix_(free, free)], -gradient[free]
             )
-            x = np.clip(place.x + way, low, high)
+            x = self._within(np.clip(place.x + way, low, high))
             way = x - place.x
             promise = -float(way @ (2.0 * gradient + normal @ way))
             if 0.0 <= promise < PROMISED * gain * place.cost:

@@ -234,6 +234,7 @@ class Problem(Slopes):
             self.likely(model),
             self._bounds(model),
             self.still(model),
+            lambda x: self.pack(self.unpack(model, x)),
         )
 
     def slopes(self, fit: Fit) -> dict[str, FloatArray]:

@@ -39,13 +39,19 @@ class Slopes(Unknowns):
             step = 0.02 * max(1.0, abs(x[j])) if not axes[j].log else 0.05
             if axes[j].spread == 1.0:
                 step = 0.5
-            step = step if x[j] + step <= high else -step
+            step = step if x[j] + step <= high and self._reaches(model, x, j, step) else -step
             return self._change(model, left, j, step, centred=centred)
 
         found = np.empty((len(left), len(columns)))
         for n, column in enumerate(self.rollouts.each(one, columns)):
             found[:, n] = column
         return found
+
+    def _reaches(self, model: Model, x: FloatArray, j: int, step: float) -> bool:
+        """Return whether a step moves an unknown, which an amplitude at its end does not."""
+        moved = x.copy()
+        moved[j] += step
+        return math.isclose(float(self.pack(self.unpack(model, moved))[j]), float(moved[j]))
 
     def _change(
         self, model: Model, left: FloatArray, j: int, step: float, *, centred: bool

@@ -76,3 +76,18 @@ def test_a_spring_that_rests_too_far_keeps_its_torque_and_a_descent_sees_it():
         stiffer = coordinates.values((along + 0.02, across))
         assert stiffer['stiffness'] == pytest.approx(values['stiffness'] + 0.02 * size)
         assert abs(stiffer['rest']) < abs(values['rest'])
+
+
+@pytest.mark.parametrize(('along', 'across'), [(-5.0, 9.1), (3.0, -20.0), (30.0, 2.0)])
+def test_an_amplitude_ends_in_whatever_phase_and_keeps_what_small_angles_tell(along, across):
+    effect = find('eccentricity')
+    coordinates = Coordinates(effect.parameters)
+    [amplitude] = [p for p in effect.parameters if p.name == 'amplitude']
+    end = amplitude.high / amplitude.typical
+    z = coordinates.within((along, across))
+    assert math.hypot(*z) == pytest.approx(end)
+    assert z[0] == pytest.approx(min(along, end))
+    assert z[1] == pytest.approx(0.0, abs=1e-6) or z[1] * across > 0.0
+    assert coordinates.place(coordinates.values(z)) == pytest.approx(z, abs=1e-6)
+    inside = tuple(0.5 * place for place in z)
+    assert coordinates.within(inside) == inside

@@ -100,6 +100,20 @@ def test_a_phase_is_found_from_any_start(measured_on):
     assert values['torque'] * np.exp(1j * values['phase']) == pytest.approx(wanted, abs=0.01)
 
 
+def test_an_eccentric_drum_comes_back_from_the_end_of_its_amplitude(bench, measured_on):
+    truth = {'amplitude': -0.086, 'phase': -0.25}
+    run = measured_on(bench, ('eccentricity', 'pulley_M', truth))
+    problem = prepared([run], bench).problem
+    drum = Candidate('eccentricity', 'pulley_M')
+    model = problem.empty.joined(drum, truth)
+    beyond = replace(model, z=((-5.0, 9.1),))  # an amplitude of 0.208, beyond 0.2
+    fit = problem.fitted(beyond, rounds=12)
+    assert fit.cost == pytest.approx(problem.fitted(model, rounds=12).cost, rel=0.02)
+    found = fit.model.values(0)
+    along = found['amplitude'] * math.cos(found['phase'])
+    assert along == pytest.approx(truth['amplitude'] * math.cos(truth['phase']), rel=0.01)
+
+
 def test_sound_data_leave_noise_and_the_numbers_where_they_are(sound_problem):
     fit = sound_problem.fitted(sound_problem.empty)
     assert 0.4 * len(fit.left) < fit.cost < 1.2 * len(fit.left)
