@@ -59,6 +59,21 @@ def form_profile(problem: Problem, start: Fit, state: Fit, *, resting: bool = Tr
     return summed(form_parts(problem, start, state, resting=resting), state)
 
 
+def creep_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
+    """
+    Return where and when friction that holds may have crept away.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with them, and with its derivatives.
+    :return: noise power that each sample may keep for that, shape (samples,).
+    """
+    holding, turning = (
+        form_profile(problem, start, state, resting=resting) for resting in (True, False)
+    )
+    return holding - turning
+
+
 def summed(parts: Sequence[FloatArray], state: Fit) -> FloatArray:
     """
     Return what laws may leave together.

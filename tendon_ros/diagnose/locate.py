@@ -50,10 +50,13 @@ def whereabouts(
     problem = ready.problem
     texts = _regimes_of(problem)
     powers: dict[tuple[str, str], float] = {}
-    explained = max(0.0, found.start.cost - believed.cost)
-    worths = {k: max(found.without[k].cost - found.final.cost, 1e-9) for k in accepted}
+    # what laws may get wrong is doubted there, and yet it is a gap that they explain
+    doubted = problem.doubted
+    explained = max(0.0, float(doubted @ (found.start.left**2 - believed.left**2)))
+    gains = {k: doubted * (found.without[k].left ** 2 - found.final.left**2) for k in accepted}
+    worths = {k: max(float(gain.sum()), 1e-9) for k, gain in gains.items()}
     for k in accepted:
-        gain = np.maximum(found.without[k].left ** 2 - found.final.left**2, 0.0)
+        gain = np.maximum(gains[k], 0.0)
         part = explained * worths[k] / sum(worths.values())
         _spread(powers, found.final.model.causes[k].place, gain, texts, part)
     rest, blamed = _blamed(problem, believed, left * len(believed.left), texts)

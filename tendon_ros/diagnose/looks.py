@@ -10,8 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.enough import KEPT
+from tendon_ros.diagnose.form import creep_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
@@ -19,7 +22,14 @@ from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import loose
 from tendon_ros.diagnose.unexplained import surprising
-from tendon_ros.diagnose.worth import beyond_laws, hopeless, worthwhile
+from tendon_ros.diagnose.worth import (
+    beyond_laws,
+    hopeless,
+    LEAST,
+    LEAST_IN_ONE,
+    open_question,
+    worthwhile,
+)
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 
@@ -72,6 +82,7 @@ class Looks:
             self._without_events,
             self._heard_again,
             self._otherwise_held_out,
+            self._allowing,
             self._loosened,
         ):
             rule()
@@ -164,6 +175,23 @@ class Looks:
             self._again('something happened in what was held out')
             self.ready = self.ready.moved(KEPT // 2)
             self.found = self._look(self.found.final.model)
+
+    def _allowing(self) -> None:
+        """
+        Doubt what laws may get wrong, where much of what stays does so where friction holds.
+
+        What stays there is chance, and outweighs what causes are worth elsewhere.
+        """
+        problem, start, final = self.ready.problem, self.found.start, self.found.final
+        asks = open_question(problem, final) and not problem.by_misfit
+        if not asks or not self._worth_more():
+            return
+        holds = creep_profile(problem, start, final) > LEAST
+        if problem.structured(np.where(holds, final.left, 0.0)) < LEAST_IN_ONE:
+            return
+        self._again('where friction holds, much of what stays is chance')
+        self.ready = self.ready.allowing(start.model, final.model)
+        self.found = self._look(final.model)
 
     def _loosened(self) -> None:
         """Know the file's numbers less well: some are no causes where others are off as far."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.enough import BLOCK, enough, KEPT
+from tendon_ros.diagnose.form import form_profile
 from tendon_ros.diagnose.gap import beyond_noise, noise_of, offs
 from tendon_ros.diagnose.noise import Noise, noise_of_counts
 from tendon_ros.diagnose.walls import placed
@@ -115,6 +116,36 @@ class Prepared:
         rollouts = self.whole.rollouts
         tolerance = loosest(rollouts.instrument, segments)
         again = rollouts.like(segments, tolerance)
+        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+
+    def allowing(self, start: Model, model: Model) -> Prepared:
+        """
+        Return the same where bins count the less, the more laws may get wrong of them.
+
+        Friction creeps where a motor trembles within a count. Where a pulley then stands is
+        chance, for as long as the hold lasts: beside it all that moves would hardly count.
+
+        :param start: without any cause.
+        :param model: with causes, whose laws are doubted where they explain much.
+        :return: the problems with what laws may get wrong of each bin.
+        """
+        whole = self.whole
+        before = whole.fitted(start, rounds=0)
+        state = whole.centred(whole.fitted(model, rounds=0))
+        wrong = np.split(
+            np.sqrt(form_profile(whole, before, state)),
+            np.cumsum([int(mask.sum()) for masks in whole.masks for mask in masks])[:-1],
+        )
+        parts = iter(wrong)
+        segments = []
+        for segment, masks in zip(whole.rollouts.segments, whole.masks, strict=True):
+            measured = []
+            for m, mask in zip(segment.measured, masks, strict=True):
+                part = np.zeros(len(mask))
+                part[mask] = next(parts)
+                measured.append(replace(m, by_law=part * m.doubt))
+            segments.append(replace(segment, measured=tuple(measured)))
+        again = whole.rollouts.like(segments)
         return _problems(again, self.noise, self.shift, self.looser, self.likely)
 
     def moved(self, shift: int) -> Prepared:

@@ -243,6 +243,16 @@ class Residuals:
                 rows[f'pulley_{motors[j].pulley}'][n][row] = still
         return {place: self.sampled(of_place) for place, of_place in rows.items()}
 
+    @cached_property
+    def doubted(self) -> FloatArray:
+        """By how many times the power laws make each sample more doubtful, shape (samples,)."""
+        rows = [
+            np.array([(m.doubt / m.without_laws) ** 2 for m in s.measured]) for s in self._segments
+        ]
+        return self.sampled(
+            [row.reshape(mask.shape) for row, mask in zip(rows, self._masks, strict=True)]
+        )
+
     def clusters(self, length: float) -> NDArray[np.int64]:
         """
         Return which stretch of time each sample belongs to.

@@ -46,7 +46,8 @@ class Measured:
     ``floor`` is what the sensor alone would by its data sheet; ``counted`` is the part of the
     noise's power that has a shape: what still encoders leave, and what does not repeat itself.
     ``misfit``, in the sensor's unit, is what models of this machine leave of the channel;
-    ``readings`` are as many as a bin's mean is of.
+    ``by_law``, shape (bins,), what laws of causes may get wrong of each bin; ``readings`` are as
+    many as a bin's mean is of.
     """
 
     sensor: Sensor
@@ -56,10 +57,16 @@ class Measured:
     counted: float = 1.0
     misfit: float = 0.0
     readings: float = 1.0
+    by_law: FloatArray | float = 0.0
 
     @cached_property
     def doubt(self) -> FloatArray:
-        """By how much the right model may be off: noise and misfit, shape (bins,)."""
+        """By how much the right model may be off: noise, misfit and laws, shape (bins,)."""
+        return np.hypot(self.without_laws, self.by_law)
+
+    @cached_property
+    def without_laws(self) -> FloatArray:
+        """The same without what laws may get wrong, shape (bins,)."""
         return np.hypot(self.noise, self.misfit)
 
     @cached_property

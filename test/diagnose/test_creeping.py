@@ -1,0 +1,99 @@
+"""Where friction holds, a pulley stands where chance has it: there bins may count less."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tendon_ros.diagnose import looks
+from tendon_ros.diagnose.form import creep_profile, form_profile
+from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.patience import Patience
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.sticking import sticking
+
+RUBS = Candidate('coulomb_friction', 'pulley_3')
+GAIN = Candidate('torque_gain', 'motor_M')
+SAID = 'looking again: where friction holds, much of what stays is chance'
+
+
+@pytest.fixture(scope='module')
+def holding(bench, measured_on):
+    """Return a recording in contact, with holds in which friction of 3 holds, made ready."""
+    run = measured_on(
+        bench,
+        ('coulomb_friction', 'pulley_3', {'torque': 0.3}),
+        trajectory='paper_fig12',
+        settings=(),
+        touching=True,
+    )
+    return prepared([run], bench)
+
+
+def fits(problem, *causes):
+    """Return the file's fit, and one with causes, with its derivatives."""
+    model = problem.empty
+    for cause, values in causes:
+        model = model.joined(cause, values)
+    start = problem.fitted(problem.empty, rounds=0)
+    return start, problem.fitted(model, rounds=1)
+
+
+def test_only_friction_creeps_and_only_where_it_holds(holding):
+    problem = holding.problem
+    start, state = fits(problem, (RUBS, {'torque': 0.3}))
+    crept = creep_profile(problem, start, state)
+    [held] = sticking(problem, state)
+    assert 0.1 < np.mean(held) < 0.9
+    assert np.max(crept[held]) > 1.0
+    assert not crept[~held].any()
+    start, state = fits(problem, (GAIN, {'gain': 1.1}))
+    assert not creep_profile(problem, start, state).any()
+
+
+def test_a_bin_counts_the_less_the_more_laws_may_get_wrong_of_it(holding):
+    problem = holding.whole
+    start, state = fits(problem, (RUBS, {'torque': 0.3}))
+    allowing = holding.allowing(start.model, state.model)
+    state = problem.centred(problem.fitted(state.model, rounds=0))
+    wrong = form_profile(problem, start, state)
+    whole = allowing.whole
+    assert np.allclose(whole.doubted, 1.0 + wrong)
+    left = problem.left(state.model)
+    assert np.allclose(whole.left(state.model), left / np.sqrt(whole.doubted))
+    # noise is what it was, and so is what was held out
+    for was, now in zip(problem.rollouts.segments, whole.rollouts.segments, strict=True):
+        for a, b in zip(was.measured, now.measured, strict=True):
+            assert np.array_equal(a.noise, b.noise)
+    assert [m.tolist() for m in allowing.held.masks] == [m.tolist() for m in holding.held.masks]
+    # without a cause nothing changes
+    same = holding.allowing(start.model, start.model).whole
+    assert np.all(same.doubted == 1.0)
+
+
+@pytest.mark.parametrize('there', [True, False])
+def test_what_stays_where_friction_holds_asks_for_another_look(holding, monkeypatch, there):
+    said, doubted = [], []
+
+    class Searching:
+        """Ends with the friction, and leaves something where it holds, or where it turns."""
+
+        def __init__(self, problem: Problem, *_):
+            self.problem = problem
+            doubted.append(float(np.max(problem.doubted)))
+
+        def run(self):
+            start, state = fits(self.problem, (RUBS, {'torque': 0.3}))
+            [held] = sticking(self.problem, state)
+            off = np.where(held == there, 2.0, 0.0)
+            return Found(states=[start, replace(state, left=off)])
+
+    monkeypatch.setattr(looks, 'Search', Searching)
+    looks.Looks(
+        holding, [RUBS], 1, lambda what, _done: said.append(what), None, Patience(600.0)
+    ).taken()
+    assert (SAID in said) is there
+    assert doubted[0] == 1.0
+    assert (max(doubted) > 2.0) is there
