@@ -14,20 +14,21 @@ import numpy as np
 
 from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.enough import KEPT
-from tendon_ros.diagnose.form import creep_profile
+from tendon_ros.diagnose.form import creep_profile, form_power
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import loose
-from tendon_ros.diagnose.unexplained import surprising
+from tendon_ros.diagnose.unexplained import left_over, surprising
 from tendon_ros.diagnose.worth import (
     beyond_laws,
     hopeless,
     LEAST,
     LEAST_IN_ONE,
-    open_question,
     worthwhile,
 )
 from tendon_ros.identify.candidate import Candidate
@@ -178,16 +179,17 @@ class Looks:
 
     def _allowing(self) -> None:
         """
-        Doubt what laws may get wrong, where much of what stays does so where friction holds.
+        Doubt what laws may get wrong, where too much stays and much of it where friction holds.
 
         What stays there is chance, and outweighs what causes are worth elsewhere.
         """
         problem, start, final = self.ready.problem, self.found.start, self.found.final
-        asks = open_question(problem, final) and not problem.by_misfit
-        if not asks or not self._worth_more():
+        if problem.by_misfit or not self._worth_more():
             return
+        form = form_power(problem, start, final, resting=False)
         holds = creep_profile(problem, start, final) > LEAST
-        if problem.structured(np.where(holds, final.left, 0.0)) < LEAST_IN_ONE:
+        chance = problem.structured(np.where(holds, final.left, 0.0))
+        if left_over(stays(self.ready, final).whole, form) < NAMED or chance < LEAST_IN_ONE:
             return
         self._again('where friction holds, much of what stays is chance')
         self.ready = self.ready.allowing(start.model, final.model)

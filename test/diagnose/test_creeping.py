@@ -73,8 +73,19 @@ def test_a_bin_counts_the_less_the_more_laws_may_get_wrong_of_it(holding):
     assert np.all(same.doubted == 1.0)
 
 
-@pytest.mark.parametrize('there', [True, False])
-def test_what_stays_where_friction_holds_asks_for_another_look(holding, monkeypatch, there):
+@pytest.mark.parametrize(
+    ('there', 'off', 'looks_again'),
+    [
+        (True, 4.0, True),
+        # where friction turns, it is no chance
+        (False, 4.0, False),
+        # its law may be wrong by as much
+        (True, 0.8, False),
+    ],
+)
+def test_much_that_stays_where_friction_holds_asks_for_another_look(
+    holding, monkeypatch, there, off, looks_again
+):
     said, doubted = [], []
 
     class Searching:
@@ -87,13 +98,13 @@ def test_what_stays_where_friction_holds_asks_for_another_look(holding, monkeypa
         def run(self):
             start, state = fits(self.problem, (RUBS, {'torque': 0.3}))
             [held] = sticking(self.problem, state)
-            off = np.where(held == there, 2.0, 0.0)
-            return Found(states=[start, replace(state, left=off)])
+            left = np.where(held == there, off, 0.0)
+            return Found(states=[start, replace(state, left=left)])
 
     monkeypatch.setattr(looks, 'Search', Searching)
     looks.Looks(
         holding, [RUBS], 1, lambda what, _done: said.append(what), None, Patience(600.0)
     ).taken()
-    assert (SAID in said) is there
+    assert (SAID in said) is looks_again
     assert doubted[0] == 1.0
-    assert (max(doubted) > 2.0) is there
+    assert (max(doubted) > 2.0) is looks_again
