@@ -80,7 +80,7 @@ def test_a_bin_counts_the_less_the_more_laws_may_get_wrong_of_it(holding):
         # where friction turns, it is no chance
         (False, 4.0, False),
         # its law may be wrong by as much
-        (True, 0.8, False),
+        (True, 1.2, False),
     ],
 )
 def test_much_that_stays_where_friction_holds_asks_for_another_look(
