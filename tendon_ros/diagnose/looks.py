@@ -187,9 +187,10 @@ class Looks:
         if problem.by_misfit or not self._worth_more():
             return
         form = form_power(problem, start, final, resting=False)
+        if left_over(stays(self.ready, final).whole, form) < NAMED:
+            return
         holds = creep_profile(problem, start, final) > LEAST
-        chance = problem.structured(np.where(holds, final.left, 0.0))
-        if left_over(stays(self.ready, final).whole, form) < NAMED or chance < LEAST_IN_ONE:
+        if problem.structured(np.where(holds, final.left, 0.0)) < LEAST_IN_ONE:
             return
         self._again('where friction holds, much of what stays is chance')
         self.ready = self.ready.allowing(start.model, final.model)
