@@ -33,6 +33,7 @@ from tendon_ros.diagnose.worth import (
 )
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
 
 Report = Callable[[str, float], None]
 
@@ -195,6 +196,29 @@ class Looks:
         self._again('where friction holds, much of what stays is chance')
         self.ready = self.ready.allowing(start.model, final.model)
         self.found = self._look(final.model)
+        model = self.found.final.model
+        idle = self._let_in_by_doubts(problem, start, final)
+        if idle:
+            self._again('without what only the doubts let in')
+            names = {(c.effect, c.place) for k, c in enumerate(model.causes) if k in idle}
+            others = [c for c in self._candidates if (c.effect, c.place) not in names]
+            self.found = self._look(model.without(*idle), among=others)
+
+    def _let_in_by_doubts(self, problem: Problem, start: Fit, before: Fit) -> list[int]:
+        """
+        Return which causes are new and not worth having by the noise alone.
+
+        Beside large doubts, what laws get wrong is a small gap, and something fills it.
+        """
+        model = self.found.final.model
+        new = [k for k, cause in enumerate(model.causes) if cause not in before.model.causes]
+        whole = problem.fitted(model) if new else before
+        without = [problem.fitted(model.without(k)) for k in new]
+        return [
+            k
+            for k, fit in zip(new, without, strict=True)
+            if not worthwhile(problem, start, fit, whole)
+        ]
 
     def _loosened(self) -> None:
         """Know the file's numbers less well: some are no causes where others are off as far."""

@@ -108,3 +108,41 @@ def test_much_that_stays_where_friction_holds_asks_for_another_look(
     assert (SAID in said) is looks_again
     assert doubted[0] == 1.0
     assert (max(doubted) > 2.0) is looks_again
+
+
+@pytest.mark.parametrize(('gain', 'stays'), [(1.1, True), (1.0001, False)])
+def test_what_only_doubts_let_in_goes_again(bench, measured_on, monkeypatch, gain, stays):
+    effects = [('coulomb_friction', 'pulley_3', {'torque': 0.3})]
+    effects += [('torque_gain', 'motor_M', {'gain': 1.1})] if stays else []
+    run = measured_on(bench, *effects, trajectory='paper_fig12', settings=(), touching=True)
+    said, asked = [], []
+
+    class Searching:
+        """Ends with the friction, and among doubts with the gain beside it if it may."""
+
+        def __init__(self, problem: Problem, among, jobs, report, memory, begun, *_):
+            self.problem = problem
+            asked.append(list(among))
+
+        def run(self):
+            found = [(RUBS, {'torque': 0.3})]
+            doubts = bool(self.problem.doubted.max() > 1.0)
+            if doubts and GAIN in asked[-1]:
+                found.append((GAIN, {'gain': gain}))
+            start, state = fits(self.problem, *found)
+            [held, *_] = sticking(self.problem, state)
+            left = state.left if doubts else np.where(held, 4.0, 0.0)
+            return Found(states=[start, replace(state, left=left)])
+
+    monkeypatch.setattr(looks, 'Search', Searching)
+    _, found = looks.Looks(
+        prepared([run], bench),
+        [RUBS, GAIN],
+        1,
+        lambda what, _done: said.append(what),
+        None,
+        Patience(600.0),
+    ).taken()
+    assert SAID in said
+    assert (GAIN in found.final.model.causes) is stays
+    assert ('looking again: without what only the doubts let in' in said) is not stays
