@@ -132,7 +132,10 @@ def test_what_only_doubts_let_in_goes_again(bench, measured_on, monkeypatch, gai
             start, state = fits(self.problem, *found)
             [held, *_] = sticking(self.problem, state)
             left = state.left if doubts else np.where(held, 4.0, 0.0)
-            return Found(states=[start, replace(state, left=left)])
+            without = [
+                self.problem.fitted(state.model.without(k), rounds=0) for k in range(len(found))
+            ]
+            return Found(states=[start, replace(state, left=left)], without=without)
 
     monkeypatch.setattr(looks, 'Search', Searching)
     _, found = looks.Looks(
