@@ -33,7 +33,6 @@ from tendon_ros.diagnose.worth import (
 )
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
-from tendon_ros.identify.fit import Fit
 
 Report = Callable[[str, float], None]
 
@@ -196,29 +195,6 @@ class Looks:
         self._again('where friction holds, much of what stays is chance')
         self.ready = self.ready.allowing(start.model, final.model)
         self.found = self._look(final.model)
-        others = self._candidates
-        while (k := self._let_in_by_doubts(final)) is not None and not self._patience.over:
-            model = self.found.final.model
-            name = (model.causes[k].effect, model.causes[k].place)
-            self._again('without what only the doubts let in')
-            others = [c for c in others if (c.effect, c.place) != name]
-            self.found = self._look(model.without(k), among=others)
-
-    def _let_in_by_doubts(self, before: Fit) -> int | None:
-        """
-        Return which new cause is worth less than all that laws may get wrong; None where none is.
-
-        Beside doubts that is a small gap everywhere, and something fills it.
-        """
-        problem, found = self.ready.problem, self.found
-        worth = {
-            k: (found.without[k].cost - found.final.cost) / len(found.final.left)
-            for k, cause in enumerate(found.final.model.causes)
-            if cause not in before.model.causes
-        }
-        least = form_power(problem, found.start, found.final)
-        small = [k for k, own in worth.items() if own < least]
-        return min(small, key=lambda k: worth[k], default=None)
 
     def _loosened(self) -> None:
         """Know the file's numbers less well: some are no causes where others are off as far."""
