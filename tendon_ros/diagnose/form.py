@@ -68,10 +68,13 @@ def creep_profile(problem: Problem, start: Fit, state: Fit) -> FloatArray:
     :param state: with them, and with its derivatives.
     :return: noise power that each sample may keep for that, shape (samples,).
     """
-    holding, turning = (
-        form_profile(problem, start, state, resting=resting) for resting in (True, False)
-    )
-    return holding - turning
+    held = sticking(problem, state)
+    parts = [
+        HELD**2 * own * sticks
+        for own, sticks in zip(_explained(problem, start, state), held, strict=True)
+        if sticks is not None
+    ]
+    return summed(parts, state)
 
 
 def summed(parts: Sequence[FloatArray], state: Fit) -> FloatArray:
@@ -98,21 +101,30 @@ def form_parts(
     :return: for each cause the noise power that each sample may keep, shape (samples,).
     """
     causes = state.model.causes
+    held = sticking(problem, state) if resting else [None] * len(causes)
+    found = []
+    for cause, own, sticks in zip(causes, _explained(problem, start, state), held, strict=True):
+        form = np.full(len(own), _form(problem, cause.effect, cause.place) ** 2)
+        if sticks is not None:
+            form[sticks] += HELD**2
+        found.append(form * own)
+    return found
+
+
+def _explained(problem: Problem, start: Fit, state: Fit) -> list[FloatArray]:
+    """Return for each cause the power that it explains of each sample, shape (samples,)."""
+    causes = state.model.causes
     if not causes:
         return []
     explained = max(0.0, start.cost - state.cost) / len(state.left)
     # what each is worth beside the others; what they share is shared out
     worth = np.minimum(np.array(worths(problem, state)) / len(state.left), explained)
     worth *= max(1.0, explained / max(float(worth.sum()), 1e-12))
-    held = sticking(problem, state) if resting else [None] * len(causes)
     found = []
-    for k, cause in enumerate(causes):
+    for k in range(len(causes)):
         power = change(problem, state, k) ** 2
-        form = np.full(len(power), _form(problem, cause.effect, cause.place) ** 2)
-        if held[k] is not None:
-            form[held[k]] += HELD**2
         shared = min(float(worth[k]), explained) / max(float(np.mean(power)), 1e-12)
-        found.append(form * power * shared)
+        found.append(shared * power)
     return found
 
 

@@ -132,19 +132,19 @@ class Prepared:
         whole = self.whole
         before = whole.fitted(start, rounds=0)
         state = whole.centred(whole.fitted(model, rounds=0))
-        wrong = np.split(
-            np.sqrt(form_profile(whole, before, state)),
-            np.cumsum([int(mask.sum()) for masks in whole.masks for mask in masks])[:-1],
-        )
-        parts = iter(wrong)
-        segments = []
-        for segment, masks in zip(whole.rollouts.segments, whole.masks, strict=True):
-            measured = []
-            for m, mask in zip(segment.measured, masks, strict=True):
-                part = np.zeros(len(mask))
-                part[mask] = next(parts)
-                measured.append(replace(m, by_law=part * m.doubt))
-            segments.append(replace(segment, measured=tuple(measured)))
+        wrong = [np.zeros(mask.shape) for mask in whole.masks]
+        for n, c, power in whole.groups(form_profile(whole, before, state)):
+            wrong[n][c, whole.masks[n][c]] = np.sqrt(power)
+        segments = [
+            replace(
+                segment,
+                measured=tuple(
+                    replace(m, by_law=part * m.doubt)
+                    for m, part in zip(segment.measured, parts, strict=True)
+                ),
+            )
+            for segment, parts in zip(whole.rollouts.segments, wrong, strict=True)
+        ]
         again = whole.rollouts.like(segments)
         return _problems(again, self.noise, self.shift, self.looser, self.likely)
 

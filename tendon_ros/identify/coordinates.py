@@ -71,11 +71,8 @@ class Coordinates:
             for p, axis, place in zip(self._parameters, self.axes, z, strict=True)
         }
         if self._kind:
-            along, across = self._pair(z)
-            farthest = self._parameters[self._shape].high
-            pair = (
-                _polar(along, across) if self._kind == 'phase' else _rest(along, across, farthest)
-            )
+            convert = _polar if self._kind == 'phase' else _rest
+            pair = convert(*self._reached(*self._pair(z)))
             for n, value in zip((self._size, self._shape), pair, strict=True):
                 p = self._parameters[n]
                 found[p.name] = min(max(value, p.low), p.high)
@@ -105,23 +102,30 @@ class Coordinates:
         :param z: places on the axes.
         :return: places.
         """
-        if self._kind == 'rest':
-            return self.place(self.values(z))
-        if self._kind == 'phase':
-            return self._within_reach(z)
-        return tuple(z)
+        if not self._kind:
+            return tuple(z)
+        pair = self._pair(z)
+        reached = self._reached(*pair)
+        if reached == pair:
+            return tuple(z)
+        found = list(z)
+        found[self._size], found[self._shape] = self._places(*reached)
+        return tuple(found)
 
-    def _within_reach(self, z: Sequence[float]) -> tuple[float, ...]:
-        """Return places of which the amplitude is within its bounds, in phase as they are."""
-        along, across = self._pair(z)
+    def _reached(self, along: float, across: float) -> tuple[float, float]:
+        """
+        Return the nearest parts that parameters can make.
+
+        An amplitude keeps its part in phase, which small angles tell, a spring its torque: a
+        descent that has come there still sees both.
+        """
+        if self._kind == 'rest':
+            return max(along, abs(across) / self._parameters[self._shape].high), across
         end = self._parameters[self._size].high
         if math.hypot(along, across) <= end:
-            return tuple(z)
+            return along, across
         along = min(max(along, -end), end)
-        across = math.copysign(math.sqrt(end**2 - along**2), across)
-        found = list(z)
-        found[self._size], found[self._shape] = self._places(along, across)
-        return tuple(found)
+        return along, math.copysign(math.sqrt(end**2 - along**2), across)
 
     def _pair(self, z: Sequence[float]) -> tuple[float, float]:
         """Return what places make along and across."""
@@ -149,11 +153,6 @@ def _polar(along: float, across: float) -> tuple[float, float]:
     return amplitude, phase
 
 
-def _rest(stiffness: float, torque: float, farthest: float) -> tuple[float, float]:
-    """
-    Return stiffness and the angle at which it is relaxed.
-
-    The torque is kept where that is too far: a descent that has come there still sees both.
-    """
-    stiffness = max(stiffness, abs(torque) / farthest)
+def _rest(stiffness: float, torque: float) -> tuple[float, float]:
+    """Return stiffness and the angle at which it is relaxed."""
     return stiffness, torque / stiffness if stiffness > 0.0 else 0.0

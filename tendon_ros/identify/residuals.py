@@ -246,12 +246,9 @@ class Residuals:
     @cached_property
     def doubted(self) -> FloatArray:
         """By how many times the power laws make each sample more doubtful, shape (samples,)."""
-        rows = [
-            np.array([(m.doubt / m.without_laws) ** 2 for m in s.measured]) for s in self._segments
-        ]
-        return self.sampled(
-            [row.reshape(mask.shape) for row, mask in zip(rows, self._masks, strict=True)]
-        )
+        rows = [np.array([m.without_laws for m in s.measured]) for s in self._segments]
+        parts = [row.reshape(mask.shape) for row, mask in zip(rows, self._masks, strict=True)]
+        return np.asarray(self.flat(parts) ** -2)
 
     def clusters(self, length: float) -> NDArray[np.int64]:
         """
