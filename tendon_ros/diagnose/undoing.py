@@ -78,6 +78,8 @@ def _opposed(problem: Problem, state: Fit, changes: FloatArray) -> frozenset[int
     # guesses go where all channels together want them
     tied = any(t.guessed for t in problem.tolerances)
     happened = np.array([bool(cause.instants) for cause in state.model.causes])
+    # doubts lie where causes do most: beside them little of any would stay
+    changes = changes * np.sqrt(problem.doubted)
     found: frozenset[int] = frozenset()
     for alike in (happened, ~happened):
         among = [(changes * alike[:, None])[:, samples] for samples in channels.values()]

@@ -133,6 +133,18 @@ def test_those_whose_rest_alone_is_opposed_do_not_undo_each_other(monkeypatch):
     assert undoing(problem, state) == set()
 
 
+@pytest.mark.parametrize(('doubt', 'which'), [(1.0, {0, 1}), (10.0, set())])
+def test_what_is_large_where_it_is_doubted_is_not_undone(monkeypatch, doubt, which):
+    # two frictions are opposed before the tip touches, and not where both do most
+    causes = (Candidate('coulomb_friction', 'pulley_1'), Candidate('coulomb_friction', 'pulley_3'))
+    late = np.arange(len(WAVE)) >= 380
+    changes = [WAVE, np.where(late, OTHER, 0.2 * OTHER - WAVE)]
+    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    problem, state = made_up(causes)
+    problem.doubted = np.where(late, doubt**2, 1.0)
+    assert undoing(problem, state) == which
+
+
 def made_up(causes):
     """Return a problem without tolerances, and a state with some causes."""
     state = SimpleNamespace(
@@ -143,6 +155,7 @@ def made_up(causes):
         structured_by_channel=lambda left: {'torque': (float(left @ left), len(left))},
         tolerances=(),
         prior=lambda _model: np.zeros(0),
+        doubted=np.ones(len(WAVE)),
     )
     return problem, state
 
