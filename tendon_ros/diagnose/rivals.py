@@ -128,14 +128,13 @@ def sharpened(
     """
     problem = steps.problem
     close = close_ones(problem, state, without, rivals)[:most]
-    equal = state.cost + tie(problem, state) * len(state.left)
     here = problem.slopes(state)
 
     def careful(rival: Rival) -> Fit:
-        # derivatives of another state stall a fit: two places then seem to differ that do not;
-        # when events were is found in the second fit
+        # derivatives of another state stall a fit: who is better then seems only as good; when
+        # events were is found in the second fit
         fit = problem.fitted(rival.fit.model, here, rounds=10, accuracy=UNTIMED)
-        if fit.cost <= equal:
+        if fit.cost <= state.cost:
             return fit
         return problem.fitted(fit.model, rounds=6, accuracy=1e-3)
 

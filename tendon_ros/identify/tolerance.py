@@ -95,7 +95,10 @@ def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, 
         where it says nothing of them.
     """
     stated = instrument.tolerances
-    own = {(use.effect, use.place): use.parameters for use in instrument.effects}
+    own = {
+        (use.effect, use.place): {**find(use.effect).neutral, **use.parameters}
+        for use in instrument.effects
+    }
     found = list(_of_effects(instrument))
     taken = {(t.effect, t.place, t.parameter) for t in found}
 
