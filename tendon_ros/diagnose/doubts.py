@@ -8,10 +8,11 @@ import math
 
 import numpy as np
 
-from tendon_ros.base.recording import unit_of
+from tendon_ros.base.recording import Recording, unit_of
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.explanation import Model
+from tendon_ros.model.instrument import Instrument
 
 #: times the noise that is accounted for, beyond which what is heard is something else; and times
 #: the noise of a sensor from which on one wants to hear what hides what it would show
@@ -21,6 +22,27 @@ WEAK = 20.0
 #: effects, and numbers of the file, by which torques or motions are another number of times as
 #: large: other guesses may well be off by fifty times
 SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
+
+
+def unheard_words(
+    given: Sequence[Recording], kept: Sequence[Recording], instrument: Instrument
+) -> list[str]:
+    """
+    Say which channels a verdict knows nothing of, since no recording's could be relied on.
+
+    :param given: the recordings as they came.
+    :param kept: what is left of them.
+    :param instrument: its sensors measure the channels that matter.
+    :return: a sentence for each.
+    """
+    known = {name for recording in kept for name in recording.channels}
+    came = {name for recording in given for name in recording.channels}
+    return [
+        f'{sensor.channel} could not be judged: it was left out of every recording, as the notes '
+        'say, and whatever shows there alone is not found'
+        for sensor in instrument.sensors
+        if sensor.channel in came - known
+    ]
 
 
 def absurd_words(moved: Sequence[Moved]) -> list[str]:

@@ -18,7 +18,14 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
-from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, SCALING, weak_words
+from tendon_ros.diagnose.doubts import (
+    absurd_words,
+    coarse_words,
+    loud_words,
+    SCALING,
+    unheard_words,
+    weak_words,
+)
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.further import foretells
@@ -164,6 +171,7 @@ def diagnose(
         ),
         next_experiment=ahead,
         doubts=(
+            *unheard_words(recordings, runs, given),
             *strong_words(runs, instrument),
             *weak_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),

@@ -28,6 +28,7 @@ class Candidate:
     ``given``: what the instrument file says of this effect at this place. The candidate then
     stands instead of it: that the file is wrong about the effect. ``magnitude``: how large the
     forces of the instrument are. ``stated``: the file says how well it knows what it gives.
+    ``least``: below which a size changes nothing there.
     """
 
     effect: str
@@ -36,6 +37,7 @@ class Candidate:
     given: tuple[tuple[str, float], ...] = ()
     magnitude: Magnitude = TYPICAL
     stated: bool = False
+    least: float = -math.inf
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -43,6 +45,7 @@ class Candidate:
         known = dict(self.given)
         effect = find(self.effect)
         own = [self.magnitude.sized(p) for p in effect.parameters if p.search != 'guess']
+        own = [p if p.is_shape else replace(p, low=max(p.low, self.least)) for p in own]
         if not self.given_size:
             return tuple(own)  # what has no size has no shape either
         return tuple(_seen_from(p, known[p.name]) if p.name in known else p for p in own)
@@ -197,6 +200,8 @@ def everyone(
                 names = [f'{place}.{effect.id}.{name}' for name in given]
                 stated = any(math.isfinite(instrument.tolerances.get(n, math.inf)) for n in names)
                 one = replace(one, given=tuple(sorted(given.items())), stated=stated)
+            if effect.id == 'viscous_friction':  # less than no damping would drive
+                one = replace(one, least=-instrument.pulleys[index].damping)
             found.append(one)
     return tuple(found)
 

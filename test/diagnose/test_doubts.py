@@ -5,7 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.doubts import absurd_words, coarse_words, loud_words, weak_words
+from tendon_ros.diagnose.doubts import (
+    absurd_words,
+    coarse_words,
+    loud_words,
+    unheard_words,
+    weak_words,
+)
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -29,6 +35,18 @@ def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured
     assert [w.split()[0] for w in words] == ([EFFORT] if more and told else [])
     # the sensor's own noise is 5 mN m, and counts make some more
     assert all(4 <= int(w.split()[2]) <= 10 for w in words)
+
+
+def test_a_channel_that_no_recording_keeps_is_said_with_the_verdict(measured_on):
+    body = load_instrument('single_body')
+    run = measured_on(body)
+    rest = {name: channel for name, channel in run.channels.items() if name != EFFORT}
+    without = replace(run, channels=rest)
+    [said] = unheard_words([run, run], [without, without], body)
+    assert said.startswith(f'{EFFORT} could not be judged')
+    # one recording tells enough, and what never came is missed by nobody
+    assert not unheard_words([run, run], [run, without], body)
+    assert not unheard_words([without], [without], body)
 
 
 @pytest.mark.parametrize('times', [1.0, 30.0])

@@ -8,8 +8,9 @@ import pytest
 
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved
+from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved, sharpened
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
@@ -67,6 +68,28 @@ def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
     # of what stays of channels less is noise
     machine = SimpleNamespace(by_misfit=True, structured=problem.structured)
     assert close_ones(machine, state, without, rivals) == rivals[:1]
+
+
+@pytest.mark.parametrize(('here', 'fits'), [(1.3, 2), (0.9, 1)])
+def test_who_is_only_as_good_by_derivatives_of_another_state_is_fitted_again(here, fits):
+    asked = []
+
+    def fitted(model, known=None, **_):
+        asked.append(known)
+        return Fit(model, left, np.zeros((100, 0)), 100.0 * (here if known else 0.7))
+
+    left = np.ones(100)
+    problem = SimpleNamespace(
+        by_misfit=False, structured=lambda _left: 1.0, slopes=lambda _fit: {'own': left},
+        fitted=fitted,
+    )  # fmt: skip
+    steps = SimpleNamespace(problem=problem, pool=SimpleNamespace(map=map))
+    state, without, rival = (
+        Fit(None, left, np.zeros((100, 0)), cost) for cost in (100.0, 900.0, 140.0)
+    )
+    [found] = sharpened(steps, state, without, [Rival(COULOMB, rival)], 3)
+    assert found.fit.cost == pytest.approx(90.0 if fits == 1 else 70.0)
+    assert len(asked) == fits
 
 
 def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, measured_on):

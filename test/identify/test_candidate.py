@@ -63,6 +63,17 @@ def test_events_have_times_and_what_lasts_has_none():
     assert Candidate('gravity', 'pulley_2').changes({'torque': 0.1, 'phase': 0.0}) == ()
 
 
+def test_a_pulley_has_no_less_than_no_damping(bench, channels):
+    for pulley in bench.pulleys:
+        place = f'pulley_{pulley.name}'
+        [damping] = next(
+            c
+            for c in everyone(bench, channels)
+            if (c.effect, c.place) == ('viscous_friction', place)
+        ).parameters
+        assert damping.low == -pulley.damping
+
+
 def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
     louder = [
         replace(c, value=20.0 * c.value)

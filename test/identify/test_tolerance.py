@@ -92,3 +92,13 @@ def test_a_push_that_happens_once_more_is_not_that_of_the_file(bench):
     known = replace(bench, effects=(push,), tolerances={'pulley_2.disturbance.torque': 0.1})
     [torque] = [t for t in tolerances(known) if t.effect == 'disturbance']
     assert not torque.is_moved_by(Candidate('disturbance', 'pulley_2'))
+
+
+def test_an_effect_of_which_only_some_parameters_are_given_leaves_the_others_as_they_are(bench):
+    # what a search finds of a cable is how stiff it is, and says nothing of its damping
+    softer = EffectUse('cable_stiffness', 'cable_m1', {'scale': 0.8})
+    guessed = {'cable_m1.damping': math.inf}
+    found = by_name(replace(bench, effects=(softer,), tolerances=guessed))
+    damping = found['cable_m1.damping']
+    assert damping.given
+    assert damping.axis.value(0.0) == 0.0
