@@ -3,7 +3,7 @@ Viscous friction: damping that differs from the instrument file.
 
 Grease, churned or cold, resists in proportion to speed. The number is added to the pulley's
 damping, so it works for a file that says 0; a negative number says that the file has too much.
-Damping as a whole never falls below zero: what a fit asks for beyond that changes nothing.
+Damping as a whole never falls below zero, and a fit ends there.
 
 Equation::
 
