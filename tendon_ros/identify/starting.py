@@ -21,7 +21,7 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
 from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
-from tendon_ros.identify.waves import shows
+from tendon_ros.identify.waves import candidates, powers
 from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
@@ -29,6 +29,7 @@ Start = tuple[Candidate, dict[str, float]]
 
 EVENTS = 2  # starts of one event: in all recordings, or in one of them
 BEGUN = 0.1  # part of a recording before an event, and after: else it has always been there
+FEWEST = 2  # ripples that can be compared
 WAVES = 400.0  # of a ripple over a turn that are looked for, more where counts are finer
 LEVELS = 5  # tried for the limit of a motor's torque
 #: times the preload at which a cable would begin to loosen
@@ -119,8 +120,8 @@ class Starting:
         """
         Find the period of a ripple from what is left of the motor's torque over its angle.
 
-        A reading that knows no sign has it upside down where the torque is negative, as what a
-        torque that hardly changes would do to it tells.
+        A reading that knows no sign has it upside down where the torque is negative, as what the
+        slowest of ripples would do to it tells.
         """
         instrument = self._problem.rollouts.instrument
         motors = [m for m in instrument.motors if f'motor_{m.name}' == candidate.place]
@@ -134,9 +135,9 @@ class Starting:
         if not np.isfinite(change).all():
             return [values]
         most = min(WAVES / fineness(instrument), cycles.high)
-        grid = np.concatenate([np.arange(1.0, 60.0, 0.5), np.arange(60.0, most, 2.0)])
-        # slower waves that fit better are no ripple, and would stand before one that is
-        grid = grid[[shows(self._problem, candidate.place, one) for one in grid.tolist()]]
+        grid = candidates(self._problem, candidate.place, most)
+        if len(grid) < FEWEST:
+            return [values]
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
         groups, changed = (self._problem.groups(left) for left in (self._fit.left, change))
@@ -147,11 +148,10 @@ class Starting:
             if not len(left):
                 continue
             row = segments[n].prescribed.index(motors[0].pulley)
-            angle = segments[n].motion.value[row][self._problem.masks[n][c]]
-            wave = np.exp(1j * np.outer(grid, angle[::2])) * np.sign(turned[::2])
-            wave -= wave.mean(1, keepdims=True)
-            part = left[::2] - left[::2].mean()
-            power += np.abs(wave @ part) ** 2 / np.maximum((np.abs(wave) ** 2).sum(1), 1.0)
+            motion, mask = segments[n].motion.value[row], self._problem.masks[n][c]
+            angle, moves = motion[mask], np.abs(np.gradient(motion))[mask]
+            sign = np.sign(turned * np.sin(cycles.low * angle - phase.low))
+            power += powers(grid, angle, moves, left, sign)
         around = np.concatenate([[-math.inf], power, [-math.inf]])
         peaks = [k for k in range(len(grid)) if around[k] <= power[k] >= around[k + 2]]
         peaks.sort(key=lambda k: -power[k])
