@@ -21,7 +21,7 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
 from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
-from tendon_ros.identify.waves import candidates, powers
+from tendon_ros.identify.waves import powers, ripples
 from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
@@ -135,7 +135,7 @@ class Starting:
         if not np.isfinite(change).all():
             return [values]
         most = min(WAVES / fineness(instrument), cycles.high)
-        grid = candidates(self._problem, candidate.place, most)
+        grid = ripples(self._problem, candidate.place, most)
         if len(grid) < FEWEST:
             return [values]
         power = np.zeros(len(grid))

@@ -47,15 +47,15 @@ def _turns(problem: Problem, place: str) -> float:
     return 1.0 if far is None else far / (2.0 * math.pi)
 
 
-def candidates(problem: Problem, place: str, most: float) -> FloatArray:
+def ripples(problem: Problem, place: str, most: float) -> FloatArray:
     """
     Return the ripples that are looked for: as close as the motor's travel can tell apart.
 
     :param problem: the data.
     :param place: of a motor.
     :param most: waves on a turn up to which they are looked for.
-    :return: waves on a turn, evenly spaced from zero, shape (ripples,); those that cannot be told
-        from other torques are not among them, but for the first one or few.
+    :return: waves on a turn, evenly spaced, shape (ripples,); without those that cannot be told
+        from any torque that follows the angle.
     """
     turns = _turns(problem, place)
     spacing = min(COARSE, COARSE / max(turns, 1e-9))

@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.starting import Starting
-from tendon_ros.identify.waves import candidates, powers, shows, travel
+from tendon_ros.identify.waves import powers, ripples, shows, travel
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
@@ -43,7 +43,7 @@ def test_fits_of_a_ripple_begin_where_it_can_be_told(problem):
 
 def test_ripples_are_looked_for_as_closely_as_the_travel_tells_them_apart(problem):
     turns = travel(problem, 'body') / (2.0 * np.pi)
-    grid = candidates(problem, RIPPLE.place, 400.0)
+    grid = ripples(problem, RIPPLE.place, 400.0)
     np.testing.assert_allclose(np.diff(grid), 0.5)
     assert grid[0] >= 1.0
     assert grid[-1] == 400.0
