@@ -20,6 +20,8 @@ AGAIN, FEW = 2.0, 6.0
 #: waves between two ripples that are looked for, over the whole of what a motor turns or, where
 #: that is less, a turn
 COARSE = 0.5
+#: the same for a motor that turns a hundred times or more: whole numbers of waves are met exactly
+FINE = 0.005
 
 
 def shows(problem: Problem, place: str, cycles: float) -> bool:
@@ -58,7 +60,7 @@ def ripples(problem: Problem, place: str, most: float) -> FloatArray:
         from any torque that follows the angle.
     """
     turns = _turns(problem, place)
-    spacing = min(COARSE, COARSE / max(turns, 1e-9))
+    spacing = max(FINE, min(COARSE, COARSE / max(turns, 1e-9)))
     grid: FloatArray = spacing * np.arange(math.floor(most / spacing) + 1, dtype=np.float64)
     # slower waves that fit better are no ripple, and would stand before one that is
     return grid[(grid >= 1.0) & _shown(grid, turns)]
@@ -100,10 +102,10 @@ def _sums(
     cycles: FloatArray, spacing: float, angle: FloatArray, values: FloatArray
 ) -> NDArray[np.complex128]:
     """Return sums of values times exp(i cycles angle), by one transform over the angle."""
-    # an angle is known to an eighth of the shortest wave, and all of them lie within one period
+    # an angle is known to an eighth of the shortest wave; after one period all waves begin anew
     count = scipy.fft.next_fast_len(math.ceil(8.0 * float(cycles[-1]) / spacing))
     step = 2.0 * math.pi / (spacing * count)
-    place = np.round((angle - angle.min()) / step).astype(np.int64)
+    place = np.round(angle / step).astype(np.int64) % count
     sums = np.conj(scipy.fft.rfft(np.bincount(place, weights=values, minlength=count)))
     return np.asarray(sums[np.round(cycles / spacing).astype(np.int64)])
 
