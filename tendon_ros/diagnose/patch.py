@@ -8,12 +8,11 @@ import math
 
 from tendon_ros.diagnose.gap import beyond_noise
 from tendon_ros.diagnose.result import ChannelGap
-from tendon_ros.effects import find
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.cable import hardened
-from tendon_ros.model.effect_use import in_force
-from tendon_ros.model.instrument import contact_place, Curve, EffectUse, Instrument
+from tendon_ros.model.effect_use import in_force, whole
+from tendon_ros.model.instrument import contact_place, Curve, Instrument
 
 
 def patched(
@@ -88,7 +87,7 @@ def patched(
     # a motor's torque constant is no number of the file: it stays an effect
     known = [t.use(z) for t, z in far if t.given or t.quantity == 'torque_gain']
     accepted = [
-        _whole(model.use(k)) for k, cause in enumerate(model.causes) if cause.acts_in(recording)
+        whole(model.use(k)) for k, cause in enumerate(model.causes) if cause.acts_in(recording)
     ]
     bent = bristles(model, instrument.effects, problem.rollouts.tolerance)
     used = {loop.curve for loop in loops}
@@ -107,13 +106,6 @@ def patched(
             if name not in undamped or math.isinf(spread)
         },
     )
-
-
-def _whole(use: EffectUse) -> EffectUse:
-    """Return an effect with the parameters that no search moves, as a file has it."""
-    if use.instead:
-        return use
-    return replace(use, parameters={**find(use.effect).neutral, **use.parameters})
 
 
 def doubted(instrument: Instrument, gaps: Sequence[ChannelGap]) -> Instrument:

@@ -137,7 +137,7 @@ class Starting:
         most = min(WAVES / fineness(instrument), cycles.high)
         grid = ripples(self._problem, candidate.place, most)
         if len(grid) < FEWEST:
-            return [values]
+            return []
         power = np.zeros(len(grid))
         segments = self._problem.rollouts.segments
         groups, changed = (self._problem.groups(left) for left in (self._fit.left, change))

@@ -16,7 +16,7 @@ from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.model.effect_use import units_at
+from tendon_ros.model.effect_use import units_at, whole
 from tendon_ros.model.instrument import (
     Contact,
     contact_place,
@@ -95,10 +95,7 @@ def tolerances(instrument: Instrument, looser: float = 1.0) -> tuple[Tolerance, 
         where it says nothing of them.
     """
     stated = instrument.tolerances
-    own = {
-        (use.effect, use.place): {**find(use.effect).neutral, **use.parameters}
-        for use in instrument.effects
-    }
+    own = {(use.effect, use.place): whole(use).parameters for use in instrument.effects}
     found = list(_of_effects(instrument))
     taken = {(t.effect, t.place, t.parameter) for t in found}
 

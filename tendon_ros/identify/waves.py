@@ -60,7 +60,7 @@ def ripples(problem: Problem, place: str, most: float) -> FloatArray:
         from any torque that follows the angle.
     """
     turns = _turns(problem, place)
-    spacing = max(FINE, min(COARSE, COARSE / max(turns, 1e-9)))
+    spacing = max(FINE, COARSE / max(turns, 1.0))
     grid: FloatArray = spacing * np.arange(math.floor(most / spacing) + 1, dtype=np.float64)
     # slower waves that fit better are no ripple, and would stand before one that is
     return grid[(grid >= 1.0) & _shown(grid, turns)]

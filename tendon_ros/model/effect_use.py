@@ -30,6 +30,18 @@ def units_at(instrument: Instrument, effect: str, place: str) -> dict[str, str]:
     }
 
 
+def whole(use: EffectUse) -> EffectUse:
+    """
+    Return an effect with the parameters that no search moves, as a file has it.
+
+    :param use: with some of its parameters.
+    :return: with all of them; what stands instead of a file's effect has the others from there.
+    """
+    if use.instead:
+        return use
+    return replace(use, parameters={**find(use.effect).neutral, **use.parameters})
+
+
 def checked_use(
     instrument: Instrument, effect: str, place: str, parameters: Mapping[str, str | float]
 ) -> EffectUse:
