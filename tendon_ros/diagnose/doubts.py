@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording, unit_of
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument import Instrument
+
+FloatArray = NDArray[np.float64]
 
 #: times the noise that is accounted for, beyond which what is heard is something else; and times
 #: the noise of a sensor from which on one wants to hear what hides what it would show
@@ -113,42 +116,62 @@ def loud_words(ready: Prepared) -> list[str]:
 
 def coarse_words(ready: Prepared) -> list[str]:
     """
-    Say of which channels a count of the encoders hides more than their own noise does.
+    Say of which channels counts of the encoders, or bins, hide more than their own noise does.
 
     :param ready: the problem, with its noise.
     :return: a sentence for each of whose sensor the file tells the noise.
     """
-    return [
-        f'{one.channel} is foretold to {one.heard:.2g} {unit_of(one.channel)} and no better, '
-        f'{one.heard / one.sensor:.0f} times what its sensor leaves: the motion is known '
-        'to a count of the encoders, and inertia and cables make that much of a count. What is '
-        'smaller does not show here; slower motions or a finer encoder show more'
-        for one in _levels(ready)
-        if one.heard > LOUD * one.sensor and one.heard <= LOUD * one.told
-    ]
+    found = []
+    for one in _levels(ready):
+        if one.heard <= LOUD * one.sensor or one.heard > LOUD * one.told:
+            continue
+        if one.bins > one.counts:
+            period = ready.whole.rollouts.segments[0].period
+            why = (
+                f'bins of {1e3 * period:.2g} ms see no more of what swings that fast, and shorter '
+                'ones would be too many. What is smaller does not show here; slower motions, or '
+                'fewer seconds of them, show more'
+            )
+        else:
+            why = (
+                'the motion is known to a count of the encoders, and inertia and cables make that '
+                'much of a count. What is smaller does not show here; slower motions or a finer '
+                'encoder show more'
+            )
+        found.append(
+            f'{one.channel} is foretold to {one.heard:.2g} {unit_of(one.channel)} and no better, '
+            f'{one.heard / one.sensor:.0f} times what its sensor leaves: {why}'
+        )
+    return found
 
 
 @dataclass(frozen=True)
 class _Level:
-    """Noise of a channel's bins in its unit: heard, of its sensor alone, and with counts."""
+    """Noise of a channel's bins in its unit: heard, and what its sensor, counts and bins make."""
 
     channel: str
     heard: float
     sensor: float
-    told: float
+    counts: float
+    bins: float
+
+    @property
+    def told(self) -> float:
+        """Noise that is accounted for."""
+        return math.hypot(self.sensor, self.counts, self.bins)
 
 
 def _levels(ready: Prepared) -> list[_Level]:
     """Return the noise of each channel of whose sensor the file tells it."""
-    powers: dict[str, list[tuple[float, float, float]]] = {}
-    for segment, counts in zip(ready.whole.rollouts.segments, ready.noise.counts, strict=True):
-        for m, counted in zip(segment.measured, counts, strict=True):
+    powers: dict[str, list[FloatArray]] = {}
+    segments = ready.whole.rollouts.segments
+    for segment, *made in zip(segments, ready.noise.counts, ready.noise.bins, strict=True):
+        for m, *rows in zip(segment.measured, *made, strict=True):
             if m.floor > 0.0:
-                own = m.floor**2
-                powers.setdefault(m.sensor.channel, []).append(
-                    (float(np.mean(m.noise**2)), own, own + float(np.mean(counted**2)))
-                )
+                heard, *others = (float(np.mean(row**2)) for row in (m.noise, *rows))
+                power = np.array([heard, m.floor**2, *others])
+                powers.setdefault(m.sensor.channel, []).append(power)
     return [
-        _Level(channel, *(math.sqrt(power) for power in np.mean(parts, axis=0)))
+        _Level(channel, *np.sqrt(np.mean(parts, axis=0)).tolist())
         for channel, parts in powers.items()
     ]

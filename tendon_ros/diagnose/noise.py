@@ -2,7 +2,8 @@
 Noise: what no model could do better than.
 
 What bins near each other do not share; what the motion's counts make of every channel through the
-stiff cables; and how far the machine agrees with itself where it does the same again.
+stiff cables, and what happens faster than the bins; and how far the machine agrees with itself
+where it does the same again.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import encoder_channels
@@ -37,12 +39,14 @@ class Noise:
     What is known of the noise, whatever the model.
 
     ``counts``: what the motion's counts make of each channel, by recording and channel, shape
-    (bins,) each, in the channel's unit. ``resting``: of each recording the channels of motors'
-    torques, with where the motor cannot be told from rest, shape (bins,). ``motions``: of each how
-    it may have moved as well, its counts elsewhere, and smoother.
+    (bins,) each, in the channel's unit; ``bins``: the same of what bins are too long to see.
+    ``resting``: of each recording the channels of motors' torques, with where the motor cannot be
+    told from rest, shape (bins,). ``motions``: of each how it may have moved as well, its counts
+    elsewhere, and smoother.
     """
 
     counts: tuple[tuple[FloatArray, ...], ...]
+    bins: tuple[tuple[FloatArray, ...], ...]
     resting: tuple[Mapping[int, BoolArray], ...]
     motions: tuple[tuple[Signals, Signals], ...]
 
@@ -66,6 +70,22 @@ class Noise:
         known = all(np.isfinite(row).all() for rows in counts for row in rows)
         return replace(self, counts=counts) if known else self
 
+    def unseen_by_bins(self, segments: Sequence[Segment], changes: Sequence[FloatArray]) -> Noise:
+        """
+        Return the same where bins are longer than they ought to be.
+
+        :param segments: the recordings.
+        :param changes: of each what shorter bins change, shape (channels, bins).
+        :return: the noise; what cannot be computed on shorter bins changes nothing.
+        """
+        return replace(
+            self,
+            bins=tuple(
+                tuple(_level(np.nan_to_num(row), segment.period, COUNTED) for row in rows)
+                for segment, rows in zip(segments, changes, strict=True)
+            ),
+        )
+
     def given(self, segments: Sequence[Segment], predicted: Sequence[FloatArray]) -> list[Segment]:
         """
         Return recordings with their noise: what is heard, of counts, and does not repeat itself.
@@ -79,15 +99,17 @@ class Noise:
             for segment, rows in zip(segments, predicted, strict=True)
         ]
         found = []
-        for segment, rows, by_counts, apart, resting in zip(
-            segments, left, self.counts, unrepeated(segments, left), self.resting, strict=True
+        by_recording = (self.counts, self.bins, unrepeated(segments, left), self.resting)
+        for segment, rows, by_counts, by_bins, apart, resting in zip(
+            segments, left, *by_recording, strict=True
         ):
             near = neighbours(segment.spacing, counted=bool(segment.prescribed))
             noise, shaped = [], []
-            for n, (m, row, c, a) in enumerate(
-                zip(segment.measured, rows, by_counts, apart, strict=True)
+            for n, (m, row, of_counts, of_bins, a) in enumerate(
+                zip(segment.measured, rows, by_counts, by_bins, apart, strict=True)
             ):
                 h = _heard(m, row, near)
+                c = np.hypot(of_counts, of_bins)
                 if n in resting:
                     c = _no_quieter(c, resting[n])
                 # what is heard and what counts make does not repeat itself either
@@ -118,6 +140,7 @@ def noise_of_counts(
     )
     return Noise(
         _counted(Rollouts(instrument, segments), motions, [[] for _ in segments], predicted),
+        tuple(tuple(np.zeros(len(s.time)) for _ in s.measured) for s in segments),
         tuple({row: still for row, _, still in s.at_rest(instrument)} for s in segments),
         motions,
     )
@@ -183,7 +206,9 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
         bins = segment.period * np.arange(len(motion))
         # the middle of a bin lies between two readings, which share their noise
         read = np.arange(-0.5 * sampling, len(motion) * segment.period, sampling)
-        found: FloatArray = np.interp(bins, read, recounted(np.interp(read, bins, motion), error))
+        between: FloatArray = CubicSpline(bins, motion)(read)
+        # what lies between bins is not known to a count of a fine encoder: only changes count
+        found: FloatArray = motion + np.interp(bins, read, recounted(between, error) - between)
         return found
 
     return _moved(instrument, segment, recording, again)

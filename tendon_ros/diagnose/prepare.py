@@ -9,19 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.bins import in_bins
 from tendon_ros.diagnose.enough import BLOCK, enough, KEPT
 from tendon_ros.diagnose.form import form_profile
 from tendon_ros.diagnose.gap import beyond_noise, noise_of, offs
-from tendon_ros.diagnose.noise import Noise, noise_of_counts
-from tendon_ros.diagnose.walls import placed
-from tendon_ros.identify.binning import bin_length
-from tendon_ros.identify.driving import encoder_channels
+from tendon_ros.diagnose.noise import Noise
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.loosest import loosest
-from tendon_ros.identify.motion import thinned
 from tendon_ros.identify.rollout import Rollouts
-from tendon_ros.identify.segment import ENDING, Segment, segment_of, SETTLING
+from tendon_ros.identify.segment import ENDING, Segment, SETTLING
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import Instrument
 
@@ -207,23 +204,9 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     :param jobs: threads.
     :return: the problem.
     """
-    recordings = [_thinned(r, instrument) for r in recordings]
-    period = bin_length(recordings, instrument)
-    segments = [segment_of(instrument, r, period) for r in recordings]
-    segments = [placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    predicted = Rollouts(instrument, segments).predicted([[] for _ in segments])
-    noise = noise_of_counts(instrument, segments, recordings, predicted)
-    segments = noise.given(segments, predicted)
-    tolerance = loosest(instrument, segments)
-    return _problems(Rollouts(instrument, segments, jobs, tolerance), noise)
-
-
-def _thinned(recording: Recording, instrument: Instrument) -> Recording:
-    """Return a recording whose motors' encoders are read no more often than tells anything."""
-    channels = dict(recording.channels)
-    for name in encoder_channels(instrument):
-        channels[name] = thinned(channels[name])
-    return replace(recording, channels=channels)
+    binned = in_bins(recordings, instrument)
+    tolerance = loosest(instrument, binned.segments)
+    return _problems(Rollouts(instrument, binned.segments, jobs, tolerance), binned.noise)
 
 
 def _problems(

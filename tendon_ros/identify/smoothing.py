@@ -19,8 +19,9 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-# the penalty's exponents in steps of half a decade, up to a cut-off of about 0.1 periods
-_WEAKEST, _STRONGEST = 0, 24
+# the penalty's exponents in steps of half a decade: from next to none, for encoders that see all
+# that moves within a few samples, up to a cut-off of about 0.1 periods
+_WEAKEST, _STRONGEST = -10, 24
 _SEEN = 51  # samples that the strongest smoother sees
 _RESTS = 201  # samples within two counts that are a rest, not a slow reversal
 _EVEN = 9  # samples over which the penalty goes from one exponent to the next
