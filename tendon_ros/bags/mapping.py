@@ -60,6 +60,9 @@ Quantity = Annotated[
     str, BeforeValidator(lambda given: str(given) if isinstance(given, int | float) else given)
 ]
 
+#: what one step of a raw number may be, by the unit of its channel
+EXAMPLES = {'rad': 'turn / 4096', 'N m': 'mA * 0.08 N m/A'}
+
 #: years of an epoch: time that counts from one of them fits into 64 bits of nanoseconds
 EARLIEST, LATEST = 1700, 2037
 
@@ -73,7 +76,10 @@ def _checked(text: str, target: str) -> None:
         try:
             factor(turned, target)
         except ValueError:
-            raise error from None
+            example = EXAMPLES.get(target, target)
+            raise ValueError(
+                f'{error}; write what one of the number is, such as {example!r}'
+            ) from None
         raise ValueError(f'{error}: write {turned!r}') from None
 
 

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal
+from difflib import get_close_matches
 import math
 import re
 
 from tendon_ros.base.quantity import parsed, written
 
 GUESSED = 'guessed'
+#: how alike a word is that was meant for it
+ALIKE = 0.75
 _SIGN = re.compile(r'\+/?-|±')
 
 
@@ -39,6 +42,11 @@ def read_stated(text: object, unit: str) -> Stated:
     if not isinstance(text, str):
         return Stated(parsed(text, unit))
     number, spread = _parts(text)
+    *_, last = number.split() or ['']
+    if spread is not None and last == GUESSED:
+        raise ValueError(f'{text!r}: what is {GUESSED} has no tolerance; write one or the other')
+    if last != GUESSED and get_close_matches(last, [GUESSED], cutoff=ALIKE):
+        raise ValueError(f'{text!r}: did you mean {GUESSED!r}?')
     value = parsed(number, unit)
     if spread is None:
         return Stated(value)

@@ -302,7 +302,10 @@ def with_effort(**fields):
         (changed(channels={'load_cell/force': {'column': 1, 'unit': 'N'}}), 'of the motors'),
         (with_position(unit='count'), 'names no angle'),
         (with_position(unit='N m'), 'is not in rad'),
-        (with_position(unit='nonsense'), 'does not exist'),
+        (
+            with_position(unit='nonsense'),
+            "does not exist, 'nonsense'; write what one of the number is, such as 'turn",
+        ),
         (with_position(unit='mm'), "let 1 rad stand for 1 m): write 'mm * rad/m'"),
         (with_effort(unit='N m/deg'), 'its angle has no place there'),
         ('format: csv\ntime: {rate: 1 Hz}\nformat: npz\n', 'line 3: format: is given twice'),

@@ -60,7 +60,7 @@ def test_a_short_gap_spoils_what_is_compared_around_it(bench, sound):
     for name in ('actuator/pulley_M/effort', 'pulley/pulley_3/position', 'load_cell/force'):
         assert not np.any((free[name].time > 2.96) & (free[name].time < 3.29))
     assert len(intake.left_out) == 1
-    assert 'free: 1 gaps in the motor positions' in intake.left_out[0]
+    assert 'free: 1 gap in the motor positions' in intake.left_out[0]
 
 
 def test_a_gap_elsewhere_is_simply_unmeasured(bench, sound, spoilt):

@@ -43,8 +43,9 @@ def cut_at_breaks(recordings: Sequence[Recording], instrument: Instrument) -> Si
         ]
         if bridged:
             longest = max(bridged, key=lambda b: b.end - b.start)
+            gaps = '1 gap' if len(bridged) == 1 else f'{len(bridged)} gaps'
             sentences.append(
-                f'{recording.name}: {len(bridged)} gaps in the motor positions, the longest of '
+                f'{recording.name}: {gaps} in the motor positions, the longest of '
                 f'{longest.end - longest.start:.3f} s at {longest.start:.3f} s; what was measured '
                 'around them is left out'
             )
