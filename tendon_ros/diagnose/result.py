@@ -22,11 +22,17 @@ class _Frozen(BaseModel):
 
 
 class ChannelGap(_Frozen):
-    """RMSE of one channel on segments that no fit has seen; ``ci95`` is that of ``after``."""
+    """
+    RMSE of one channel on segments that no fit has seen; ``ci95`` is that of ``after``.
+
+    ``fitted``: with numbers of the file fitted within their tolerances, and no effect added; none
+    in closed loop.
+    """
 
     channel: str
     unit: str
     before: float
+    fitted: float | None = None
     after: float
     noise_floor: float
     ci95: Interval

@@ -138,7 +138,7 @@ def diagnose(
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]
     beside = [cause for k, cause in zip(kept, told, strict=True) if k not in held.named]
-    channels = gaps(heard.held, file, final.model)
+    channels = gaps(heard.held, file, final.model, found.start.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments

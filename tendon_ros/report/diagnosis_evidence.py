@@ -70,9 +70,11 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
     :param gaps: by channel.
     :return: a row each: RMSE in the channel's unit and by its noise floor.
     """
+    fitted = any(gap.fitted is not None for gap in gaps)
     header = (
         'channel',
         'before',
+        *(('numbers fitted',) if fitted else ()),
         'after',
         '95 %',
         'noise floor',
@@ -86,14 +88,20 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
         rows.append(
             (
                 channel_words(gap.channel),
-                f'{number(factor * gap.before, 3)} {unit}',
+                *(
+                    '–' if x is None else f'{number(factor * x, 3)} {unit}'
+                    for x in ((gap.before, gap.fitted) if fitted else (gap.before,))
+                ),
                 f'{after} {unit}',
                 interval,
                 f'{number(factor * gap.noise_floor, 3)} {unit}',
                 *(number(x) if gap.noise_floor > 0.0 else '–' for x in in_floors(gap)),
             )
         )
-    return Table(header, tuple(rows), 'RMSE on data that no fit has seen.')
+    said = 'RMSE on data that no fit has seen.'
+    if fitted:
+        said += ' Numbers fitted: the file within its tolerances, without any effect.'
+    return Table(header, tuple(rows), said)
 
 
 def _pictures(

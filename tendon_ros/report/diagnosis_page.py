@@ -36,6 +36,7 @@ from tendon_ros.report.diagnosis_verdict import (
     in_floors,
     LABELS,
     LIKELY,
+    likenesses,
     overall,
     rest_words,
     sizes,
@@ -127,8 +128,10 @@ def _tiles(diagnosis: Diagnosis) -> tuple[Tile, ...]:
     elif diagnosis.verdict == 'no_gap':
         which, text = 'None', f'{count(len(diagnosis.candidates), "candidate")} weighed'
     else:
-        which = 'None of the catalogue'
+        which = 'Nothing certain' if diagnosis.beside else 'None of the catalogue'
         text = f'{percent(diagnosis.unexplained.probability)} that it is something else'
+        if diagnosis.beside:
+            text = f'it acts like {likenesses(diagnosis.beside)}; {text}'
     far, unit = f'{before} → {after}', 'noise deviations; the floor is 1'
     if diagnosis.verdict == 'no_gap':
         far = before

@@ -125,14 +125,19 @@ def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
     if not gaps:
         return []
     rows: list[tuple[str, ...]] = [
-        ('channel', 'before', 'after', 'floor', '', 'before/floor', 'after/floor')
+        ('channel', 'before', 'fitted', 'after', 'floor', '', 'before/floor', 'after/floor')
     ]
     for gap in gaps:
         factor, unit = gap_scale(gap)
-        rmse = (number(factor * x, 3) for x in (gap.before, gap.after, gap.noise_floor))
+        rmse = (
+            '' if x is None else number(factor * x, 3)
+            for x in (gap.before, gap.fitted, gap.after, gap.noise_floor)
+        )
         rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
-    widths = [max(len(row[k]) for row in rows) for k in range(7)]
-    left = (0, 4)
+    if all(gap.fitted is None for gap in gaps):
+        rows = [(*row[:2], *row[3:]) for row in rows]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    left = (0, len(rows[0]) - 3)
     return [
         '  '.join(
             cell.ljust(w) if k in left else cell.rjust(w)

@@ -40,6 +40,10 @@ UNIT = (
 #: stays is said to have a cause that was not named
 CLEARLY, LIKELY = 1.3, 0.5
 
+#: part of a gap that goes by numbers within their tolerances, or by what is not certain, which a
+#: verdict has to say first
+MOST = 0.5
+
 _MUCH = 1.5  # noise deviations that a reader would call a gap
 _NAMED = 3  # more effects than that make a sentence unreadable
 
@@ -51,6 +55,16 @@ def overall(diagnosis: Diagnosis) -> tuple[float, float]:
         return 0.0, 0.0
     before, after = np.sqrt(np.mean(np.square(known), axis=0))
     return float(before), float(after)
+
+
+def fitted_alone(diagnosis: Diagnosis) -> float:
+    """Return the gap with numbers fitted within their tolerances alone, as :func:`overall`."""
+    known = [
+        (g.before if g.fitted is None else g.fitted) / g.noise_floor
+        for g in diagnosis.gap
+        if g.noise_floor > 0.0
+    ]
+    return float(np.sqrt(np.mean(np.square(known)))) if known else 0.0
 
 
 def beside_words(diagnosis: Diagnosis) -> str:
@@ -114,34 +128,42 @@ def headline(diagnosis: Diagnosis) -> str:
     before, after = (number(x) for x in overall(diagnosis))
     if diagnosis.verdict == 'no_gap':
         return _no_gap(diagnosis)
+    gap = _gap(diagnosis)
     if diagnosis.verdict == 'explained' and diagnosis.causes:
-        return (
-            f'The gap of {before} noise deviations is explained by '
-            f'{_named(diagnosis)}; {_shrinks(diagnosis)} to {after}.'
-        )
+        return f'The {gap} is explained by {_named(diagnosis)}; {_shrinks(diagnosis)} to {after}.'
     lies = ''
     if diagnosis.where:
         place, share = where_words(diagnosis.where)
         lies = f' The largest part lies at {place} ({share}).'
     if not diagnosis.causes:
-        sure = ' with any certainty' if diagnosis.beside else ''
-        nothing = f'Nothing in the catalogue explains the gap of {before} noise deviations{sure}.'
-        if diagnosis.beside and after != before:
-            nothing += f' What acts like {_likenesses(diagnosis.beside)} shrinks it to {after}.'
+        if not diagnosis.beside:
+            return f'Nothing in the catalogue explains the {gap}.{lies}'
+        like = f'What acts like {likenesses(diagnosis.beside)} shrinks'
+        if _does_most(diagnosis):
+            return (
+                f'{like} the {gap} to {after}, but nothing in the catalogue explains it with any '
+                f'certainty.{lies}'
+            )
+        nothing = f'Nothing in the catalogue explains the {gap} with any certainty.'
+        if after != before:
+            nothing += f' {like} it to {after}.'
         return nothing + lies
     named = _named(diagnosis)
     does = 'explains' if len(diagnosis.causes) == 1 else 'explain'
     if diagnosis.verdict == 'unexplained':
         return (
-            f'The gap of {before} noise deviations stays unexplained: {named} {does} too little '
+            f'The {gap} stays unexplained: {named} {does} too little '
             f'of it or too uncertainly, {after} remain.{lies}'
         )
     rest = diagnosis.unexplained.where
     during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
     at = f', most likely at {place_words(rest[0])}{during},' if rest else during
+    shrinks = (
+        f'{_shrinks(diagnosis)} from {before} {_fitted(diagnosis)}to {after} noise deviations'
+    )
     return (
-        f'{named[:1].upper()}{named[1:]} {does} part of the gap: {_shrinks(diagnosis)} from '
-        f'{before} to {after} noise deviations. The rest{at} is of no known cause.'
+        f'{named[:1].upper()}{named[1:]} {does} part of the gap: {shrinks}. The rest{at} is of no '
+        'known cause.'
     )
 
 
@@ -167,6 +189,28 @@ def rest_words(diagnosis: Diagnosis) -> str:
             )
         return 'What remains is hardly more than noise, but has a form that noise has not.'
     return ''
+
+
+def _gap(diagnosis: Diagnosis) -> str:
+    """Return the gap in words, with what of it stays once numbers are fitted."""
+    before, _ = overall(diagnosis)
+    return f'gap of {number(before)} noise deviations {_fitted(diagnosis)}'.rstrip()
+
+
+def _fitted(diagnosis: Diagnosis) -> str:
+    """Return what stays of a gap once numbers are fitted, where that is most of it."""
+    before, _ = overall(diagnosis)
+    alone = fitted_alone(diagnosis)
+    if alone >= MOST * before:
+        return ''
+    return f'({number(alone)} once what is guessed, or within its tolerance, is fitted) '
+
+
+def _does_most(diagnosis: Diagnosis) -> bool:
+    """Return whether what is not certain explains most of what numbers leave."""
+    _, after = overall(diagnosis)
+    alone = fitted_alone(diagnosis)
+    return alone**2 - after**2 > MOST * max(alone**2 - 1.0, 0.0)
 
 
 def _shrinks(diagnosis: Diagnosis) -> str:
@@ -209,8 +253,13 @@ def _named(diagnosis: Diagnosis) -> str:
     return joined(said)
 
 
-def _likenesses(causes: tuple[Cause, ...]) -> str:
-    """Return what effects that may stand in for something are like: dry frictions are one."""
+def likenesses(causes: tuple[Cause, ...]) -> str:
+    """
+    Return what effects that may stand in for something are like: dry frictions are one.
+
+    :param causes: the effects.
+    :return: plain text.
+    """
     said = [
         f'friction on {place_words(cause.place)}'
         if find(cause.effect).dry
