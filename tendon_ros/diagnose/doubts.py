@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.recording import Recording, unit_of
 from tendon_ros.diagnose.evidence import Moved
+from tendon_ros.diagnose.gap import noise_of, offs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument import Instrument
@@ -22,6 +23,11 @@ FloatArray = NDArray[np.float64]
 LOUD = 3.0
 #: times that a motor's torque is weaker than it can be
 WEAK = 20.0
+#: times that an encoder may be off before it is taken for something else than an encoder's gain:
+#: one by a tenth happens, where a lever is not what it should be
+MISCOUNTED = 1.25
+#: part of what an angle varies by, and times its noise, beyond which it is not foretold at all
+LOST, UNFORETOLD = 0.5, 10.0
 #: effects, and numbers of the file, by which torques or motions are another number of times as
 #: large: other guesses may well be off by fifty times
 SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
@@ -96,6 +102,53 @@ def weak_words(ready: Prepared, final: Model) -> list[str]:
                 'torque, or degrees as rad), is likelier than any effect'
             )
     return found
+
+
+def scaled_words(final: Model) -> list[str]:
+    """
+    Say which encoders would be further off than any is.
+
+    :param final: what was found, and what is used beside it.
+    :return: a sentence for each.
+    """
+    gains = [
+        (cause.place, final.values(k)['gain'])
+        for k, cause in enumerate(final.causes)
+        if cause.effect == 'encoder_gain'
+    ]
+    return [
+        f'{place} would read {gain:.3g} times its angle, and no encoder is that far off: a unit '
+        '(degrees as rad), its counts a turn, a gear ratio or a column that was taken for another '
+        'is likelier than any effect'
+        for place, gain in gains
+        if not 1.0 / MISCOUNTED < gain < MISCOUNTED
+    ]
+
+
+def lost_words(ready: Prepared, final: Model) -> list[str]:
+    """
+    Say which angles are hardly foretold at all, with all that was found.
+
+    :param ready: the problem.
+    :param final: what was found.
+    :return: a sentence for each.
+    """
+    problem = ready.whole
+    off, noise = offs(problem, final), noise_of(problem)
+    read: dict[str, list[float]] = {}
+    for segment in problem.rollouts.segments:
+        for m in segment.measured:
+            if m.sensor.kind == 'angle':
+                read.setdefault(m.sensor.channel, []).append(float(np.nanstd(m.value)))
+    return [
+        f'{channel} varies by {spread:.2g} rad, and with all that was found it is foretold to '
+        f'{off[channel].rms:.2g}: a column that was taken for another, a unit (degrees as rad) or '
+        'a wrong route in the file is likelier than any effect'
+        for channel, spreads in read.items()
+        if channel in off
+        for spread in [max(spreads)]
+        if off[channel].rms > LOST * spread and off[channel].rms > UNFORETOLD * noise[channel]
+    ]
 
 
 def loud_words(ready: Prepared) -> list[str]:

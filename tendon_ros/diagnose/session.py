@@ -21,7 +21,9 @@ from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.doubts import (
     absurd_words,
     coarse_words,
+    lost_words,
     loud_words,
+    scaled_words,
     SCALING,
     unheard_words,
     weak_words,
@@ -174,6 +176,8 @@ def diagnose(
             *unheard_words(recordings, runs, given),
             *strong_words(runs, instrument),
             *weak_words(heard, final.model),
+            *scaled_words(final.model),
+            *lost_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *(loud_words(heard) if verdict == 'no_gap' else []),
         ),

@@ -8,7 +8,9 @@ import pytest
 from tendon_ros.diagnose.doubts import (
     absurd_words,
     coarse_words,
+    lost_words,
     loud_words,
+    scaled_words,
     unheard_words,
     weak_words,
 )
@@ -95,6 +97,21 @@ def test_a_weight_that_is_not_there_is_no_wrong_column(measured_on):
     empty = ready.problem.empty
     assert weak_words(ready, empty)
     assert not weak_words(ready, empty.joined(another, {'torque': 0.0, 'phase': 1.0}))
+
+
+@pytest.mark.parametrize(('times', 'far'), [(1.0, False), (1.06, False), (57.3, True)])
+def test_an_angle_in_degrees_is_no_encoder_that_is_off(measured_on, times, far):
+    rig = load_instrument('bench_rig')
+    inner = 'pulley/pulley_2/position'
+    run = measured_on(rig)
+    turned = replace(run[inner], value=times * run[inner].value)
+    ready = prepared([run.with_channels([turned])], rig)
+    model = ready.problem.empty
+    assert bool(lost_words(ready, model)) is far
+    assert all(said.startswith(f'{inner} varies by ') for said in lost_words(ready, model))
+    # where a gain makes up for it, that gain is what cannot be
+    found = model.joined(Candidate('encoder_gain', 'encoder_2'), {'gain': min(times, 5.0)})
+    assert bool(scaled_words(found)) is far
 
 
 @pytest.mark.parametrize(
