@@ -9,7 +9,7 @@ it takes is found with the beginning of the recording alone, judged on what no f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BENT, BRISTLES, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
-from tendon_ros.identify.magnitude import Magnitude, magnitude_of
+from tendon_ros.identify.magnitude import Magnitude, magnitude_of, magnitudes
 from tendon_ros.model.effect_use import units_at
 from tendon_ros.model.instrument import EffectUse, Instrument
 
@@ -108,7 +108,7 @@ def calibrate(
         ready.problem,
         fitted,
         [use for use in instrument.effects if use.effect == BENT],
-        magnitude_of(intake.recordings, plain),
+        magnitudes(plain, magnitude_of(intake.recordings, plain)),
     )
     if not start.causes and not ready.problem.tolerances:
         raise RecordingError(
@@ -156,12 +156,12 @@ def _start(
     problem: Problem,
     effects: Sequence[EffectUse],
     bent: Sequence[EffectUse],
-    magnitude: Magnitude,
+    large: Mapping[str, Magnitude],
 ) -> Model:
     """Return the model that the file is."""
     model = problem.empty
     for use in effects:
-        candidate = Candidate(use.effect, use.place, magnitude=magnitude)
+        candidate = Candidate(use.effect, use.place, magnitude=large[use.place])
         neutral = {p.name: p.neutral for p in candidate.parameters}
         model = model.joined(candidate, {**neutral, **use.parameters})
     known = {

@@ -12,7 +12,7 @@ from tendon_ros.base.errors import EffectError, listed
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import catalogue, find
 from tendon_ros.identify.coordinates import Coordinates
-from tendon_ros.identify.magnitude import Magnitude, TYPICAL
+from tendon_ros.identify.magnitude import Magnitude, magnitudes, TYPICAL
 from tendon_ros.model.instrument import EffectUse, Instrument
 from tendon_ros.model.numbers import place_index
 
@@ -27,7 +27,7 @@ class Candidate:
     What happens at a time (a slip, a push) happens in one recording, or in each at its own.
     ``given``: what the instrument file says of this effect at this place. The candidate then
     stands instead of it: that the file is wrong about the effect. ``magnitude``: how large the
-    forces of the instrument are. ``stated``: the file says how well it knows what it gives.
+    forces of the place are. ``stated``: the file says how well it knows what it gives.
     ``least``: below which a size changes nothing there.
     """
 
@@ -178,11 +178,12 @@ def everyone(
     :param instrument: the network.
     :param measured: channels that were measured; effects on sensors that were not are left out.
     :param withheld: effects that are not to be considered, ``EFFECT`` or ``EFFECT@PLACE``.
-    :param magnitude: how large the instrument's forces are.
+    :param magnitude: how large the forces of the instrument's motors are.
     :return: the candidates, in the catalogue's order; an effect that the file has at a place may
         be another one there; of what the file says how well it is known, only beyond that.
     """
     own = {(use.effect, use.place): use.parameters for use in instrument.effects}
+    large = magnitudes(instrument, magnitude)
     silent = {s.name for s in instrument.sensors if s.channel not in measured}
     found = []
     for effect in catalogue().values():
@@ -194,7 +195,7 @@ def everyone(
                 continue
             if effect.id in withheld or f'{effect.id}@{place}' in withheld:
                 continue
-            one = Candidate(effect.id, place, magnitude=magnitude)
+            one = Candidate(effect.id, place, magnitude=large[place])
             given = own.get((effect.id, place))
             if given is not None and not one.instants:
                 names = [f'{place}.{effect.id}.{name}' for name in given]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -15,6 +15,9 @@ from tendon_ros.model.instrument import Instrument
 LARGEST = 200.0  # typical sizes that a fit tries
 #: of motors, most of the time no more, that typical sizes suit: [N m], [rad/s], [rad]
 TORQUE, SPEED, TRAVEL = 5.0, 1.0, 0.25
+#: turns of a motor by a turn of a pulley from which on forces there are another kind: radians of a
+#: carriage may be metres, and an arm hang behind a gear
+GEARED = 3.0
 STEP = 0.1  # [s] over which a speed is told, long against what a count makes of it
 
 
@@ -29,6 +32,15 @@ class Magnitude(NamedTuple):
     force: float = 1.0
     damping: float = 1.0
     stiffness: float = 1.0
+
+    def behind(self, gear: float) -> Magnitude:
+        """
+        Return what the same at a motor is where that turns faster.
+
+        :param gear: turns of the motor by a turn of the place.
+        :return: of that place.
+        """
+        return Magnitude(self.force * gear, self.damping * gear**2, self.stiffness * gear**2)
 
     def sized(self, parameter: Parameter) -> Parameter:
         """
@@ -48,6 +60,44 @@ class Magnitude(NamedTuple):
 
 #: that of an instrument which is no larger than typical
 TYPICAL = Magnitude()
+
+
+def magnitudes(instrument: Instrument, magnitude: Magnitude) -> Mapping[str, Magnitude]:
+    """
+    Return how many times as large as typical effects at each place may be.
+
+    :param instrument: the network.
+    :param magnitude: at its motors.
+    :return: by place; less than at the motors nowhere.
+    """
+    gears = _gears(instrument)
+    return {
+        place: magnitude.behind(gears.get(place.removeprefix('pulley_'), 1.0))
+        if place.startswith('pulley_')
+        else magnitude
+        for place in instrument.places()
+    }
+
+
+def _gears(instrument: Instrument) -> dict[str, float]:
+    """Return by how much motors turn faster than inner pulleys, if nothing stretches."""
+    if not instrument.links:
+        return {}
+    driven = [instrument.index(pulley) for pulley in instrument.driven]
+    rows = np.zeros((len(instrument.links), len(instrument.pulleys)))
+    for row, link in zip(rows, instrument.links, strict=True):
+        row[[instrument.index(pulley) for pulley in link.route]] = [*link.route.values()]
+    rows /= np.abs(rows).max(axis=1, keepdims=True)
+    found = {}
+    for pulley in instrument.inner:
+        own = instrument.index(pulley)
+        turns = np.zeros(len(instrument.pulleys))
+        others = np.arange(len(turns)) != own
+        turns[others] = np.linalg.lstsq(rows[:, others], -rows[:, own])[0]
+        gear = float(np.abs(turns[driven]).max(initial=0.0))
+        if gear > GEARED:
+            found[pulley] = gear
+    return found
 
 
 def magnitude_of(recordings: Sequence[Recording], instrument: Instrument) -> Magnitude:

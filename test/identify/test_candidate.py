@@ -94,6 +94,49 @@ def test_sizes_are_as_large_as_the_instrument(bench, sound_run):
         assert (now.typical, now.high) == pytest.approx((times * was.typical, times * was.high))
 
 
+CARRIAGE = """
+pulleys:
+  left: {inertia: 6e-5 kg*m^2}
+  right: {inertia: 6e-5 kg*m^2}
+  carriage: {inertia: 1.5 kg*m^2, damping: 4 N*m*s/rad}  # a radian is a metre
+  arm: {inertia: 1e-3 kg*m^2}
+curves:
+  span: {elongation: {mm: [0, 10]}, tension: {N: [0, 300]}}
+loops:
+  one: {route: {carriage: 1 m, left: -15 mm}, curve: span, pretension: 60 N}
+  two: {route: {right: 15 mm, carriage: -1 m}, curve: span, pretension: 60 N}
+couplings:
+  shaft: {route: {left: 1, arm: -2}, stiffness: 30 N*m/rad}
+motors:
+  left: {encoder: {counts: 8192}}
+  right: {encoder: {counts: 8192}}
+control: {rate: 1 kHz}
+"""
+
+
+def test_what_a_motor_moves_by_a_gear_has_larger_forces(tmp_path):
+    path = tmp_path / 'carriage.yaml'
+    path.write_text(CARRIAGE, encoding='utf-8')
+    belt = load_instrument(path)
+    frictions = {
+        c.place: c.parameters[0]
+        for c in everyone(belt, [s.channel for s in belt.sensors])
+        if c.effect == 'coulomb_friction'
+    }
+    usual = Candidate('coulomb_friction', 'pulley_left').parameters[0]
+    # twice as fast is no other kind of force
+    assert (
+        frictions['pulley_left'] == frictions['pulley_right'] == frictions['pulley_arm'] == usual
+    )
+    assert frictions['pulley_carriage'].typical == pytest.approx(usual.typical / 0.015)
+    dampings = {
+        c.place: c.parameters[0].typical
+        for c in everyone(belt, [s.channel for s in belt.sensors])
+        if c.effect == 'viscous_friction'
+    }
+    assert dampings['pulley_carriage'] == pytest.approx(dampings['pulley_left'] / 0.015**2)
+
+
 def test_a_strong_and_slow_machine_may_have_much_damping():
     time = np.arange(0.0, 10.0, 0.01)
     axis = load_instrument('single_body')
