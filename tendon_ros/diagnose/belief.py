@@ -15,7 +15,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.diagnose.bent import at_bound, is_constant, is_polled, spent, vanishes
+from tendon_ros.diagnose.bent import (
+    at_bound,
+    is_constant,
+    is_counted,
+    is_polled,
+    spent,
+    vanishes,
+)
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
 from tendon_ros.diagnose.excusing import excuses
@@ -220,7 +227,9 @@ def _weighed(ready: Prepared, found: Found, k: int, left: Stays, undone: bool) -
     as_good = {r.candidate.effect for r in equals(ready.problem, found, k, by_law=False)}
     vague = len({cause.effect} | as_good) > ALIKE or _open(ready.problem, found, k)
     values = found.final.model.values(k)
-    vague |= is_constant(ready.problem, cause, values) or is_polled(ready.problem, cause, values)
+    vague |= any(
+        is_none(ready.problem, cause, values) for is_none in (is_constant, is_counted, is_polled)
+    )
     return Weighed(
         cause=cause,
         equal=equal,

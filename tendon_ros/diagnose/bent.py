@@ -16,6 +16,7 @@ from tendon_ros.base.parameter import Parameter
 from tendon_ros.diagnose.parts import simpler
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
@@ -26,6 +27,8 @@ HOLDS = 0.75
 #: of the time between samples within which a delay is the logger's, which reads one register after
 #: the other
 POLLED = 0.5
+#: counts of a motor's encoder up to which a play may be what they make
+COUNTED = 1.5
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring
 YIELDS = 0.25
@@ -101,6 +104,27 @@ def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float
     """
     polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
     return candidate.effect == 'sensor_delay' and values['time'] < polled
+
+
+def is_counted(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a play may be one that the counts of its motor's encoder make.
+
+    Where a motor turns, within a count, is not seen, and what yields there with it lags.
+
+    :param problem: the data.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether it is a play at a motor, hardly wider than a count.
+    """
+    if candidate.effect != 'backlash':
+        return False
+    counts = {
+        f'motor_{drive.motor}': drive.sensor.resolution
+        for drive in drives(problem.rollouts.instrument)
+        if not drive.by_torque
+    }
+    return values['angle'] < COUNTED * counts.get(candidate.place, 0.0)
 
 
 def is_constant(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:

@@ -11,6 +11,7 @@ from tendon_ros.diagnose.bent import (
     biased,
     degenerate,
     is_constant,
+    is_counted,
     spent,
     vanishes,
 )
@@ -114,6 +115,14 @@ def test_a_constant_torque_is_a_bias_of_the_motor_and_elsewhere_nothing_that_has
     assert biased(sound_problem, inner, far) is None
     assert is_constant(sound_problem, inner, far)
     assert not is_constant(sound_problem, inner, {**far, 'rest': 2.0})
+
+
+def test_a_play_within_a_count_is_what_counts_make(sound_problem):
+    play = Candidate('backlash', 'motor_M')
+    count = math.tau / 28000
+    assert is_counted(sound_problem, play, {'angle': 1.2 * count, 'held': 1.0})
+    assert not is_counted(sound_problem, play, {'angle': 3.0 * count, 'held': 1.0})
+    assert not is_counted(sound_problem, *LOAD)
 
 
 @pytest.mark.parametrize(('cycles', 'bent'), [(2.5, True), (5.0, False)])
