@@ -28,7 +28,7 @@ from tendon_ros.diagnose.rivals import (
     sharpened,
 )
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
-from tendon_ros.diagnose.valleys import nudged
+from tendon_ros.diagnose.valleys import nudged, waved
 from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
@@ -104,8 +104,13 @@ class Challenge:
             self._steps.report(
                 f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
             )
+            k = found.final.model.causes.index(cause)
+            without = self._without(found, k)
+            if not brief:
+                state = waved(self._steps, found.final, k, without)
+                changed |= state is not found.final
+                found.states[-1] = state
             state = found.final
-            without = self._without(found, state.model.causes.index(cause))
             rivals = self._challengers(found, cause, without, brief)
             better = None
             if replaced < REPLACED:

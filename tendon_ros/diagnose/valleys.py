@@ -1,8 +1,9 @@
 """
-Valleys in which fits of guessed numbers end, and ways out of them.
+Valleys in which fits of guessed numbers and of ripples end, and ways out of them.
 
 A fit goes downhill from where it begins. Numbers that were only guessed are far off, and from
-there the way may end in a valley that is not the deepest.
+there the way may end in a valley that is not the deepest; so may that of a ripple, whose number of
+waves has a valley for each.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from tendon_ros.identify.afar import afar, aside
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import FEW
+from tendon_ros.identify.screening import Screen
 
 FloatArray = NDArray[np.float64]
 
@@ -72,6 +74,27 @@ def nudged(steps: Steps, state: Fit) -> Fit:
             break
         state = ended
     return state
+
+
+def waved(steps: Steps, state: Fit, k: int, without: Fit) -> Fit:
+    """
+    Return a state with a ripple of as many waves as are to be seen beside the other causes.
+
+    Beside fewer causes another number seemed best, and no fit leads from one to the next.
+
+    :param steps: of the search.
+    :param state: with its causes.
+    :param k: which of them may be a ripple.
+    :param without: without it.
+    :return: the better one; the same where no other number of waves leaves clearly less.
+    """
+    problem, cause = steps.problem, state.model.causes[k]
+    if all(p.search != 'cycles' for p in cause.parameters):
+        return state
+    found = Screen(problem, without).proposals(cause)
+    begun = [without.model.joined(p.candidate, p.values) for p in found if p.gain > 0.0]
+    ended = _ended(steps, _rough(steps, problem, begun, rounds=12), steps.settled)
+    return state if ended is None or ended.cost > NUDGED * state.cost else ended
 
 
 def from_afar(steps: Steps, model: Model) -> Fit | None:

@@ -21,7 +21,7 @@ from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
 from tendon_ros.identify.step_size import fineness
 from tendon_ros.identify.untold import usual_part
-from tendon_ros.identify.waves import powers, ripples
+from tendon_ros.identify.waves import COARSE, powers, ripples
 from tendon_ros.model.numbers import place_index
 
 FloatArray = NDArray[np.float64]
@@ -155,8 +155,11 @@ class Starting:
         around = np.concatenate([[-math.inf], power, [-math.inf]])
         peaks = [k for k in range(len(grid)) if around[k] <= power[k] >= around[k + 2]]
         peaks.sort(key=lambda k: -power[k])
-        shapes = starts(candidate)
-        return [one | {cycles.name: float(grid[k])} for k in peaks[:3] for one in shapes]
+        waves = [float(grid[k]) for k in peaks[:3]]
+        if grid[1] - grid[0] < COARSE:
+            # a motor's poles come again after a turn: what else is left has moved the peak
+            waves = [*dict.fromkeys([*waves, *(float(round(w)) for w in waves)])]
+        return [one | {cycles.name: w} for w in waves for one in starts(candidate)]
 
     def _levels(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
         """Try limits between the largest torque of what the motor reported and the usual one."""

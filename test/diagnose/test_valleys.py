@@ -9,7 +9,12 @@ from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import valleys
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.diagnose.valleys import nudged
+from tendon_ros.diagnose.valleys import nudged, waved
+from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.session import simulate
+from tendon_ros.model.trajectory import Trajectory
 
 #: times what the file says, and what is added to dampings: where a fit from afar had ended
 VALLEY = {
@@ -44,6 +49,28 @@ def test_nothing_is_nudged_where_nothing_is_guessed(bench, measured_on):
     problem = prepared([run], bench).problem
     start = problem.fitted(problem.empty)
     assert nudged(Steps(problem, [], 1, lambda *_: None), start) is start
+
+
+def test_a_ripple_gets_out_of_a_number_of_waves_that_is_not_its_own():
+    body = load_instrument('single_body')
+    ripple = Candidate('torque_ripple', 'motor_body')
+    true = {'amplitude': 0.1, 'cycles': 14.0, 'phase': 0.3}
+    time = np.arange(0.0, 16.0, 0.01)
+    turns = Trajectory('turns', time, {'body': 4.0 * np.pi * np.sin(0.5 * time) ** 2})
+    rig = replace(body, effects=(*body.effects, EffectUse(ripple.effect, ripple.place, true)))
+    problem = prepared([simulate(rig, turns, seed=1)], body).problem
+    steps = Steps(problem, [ripple], 1, lambda *_: None)
+    start = problem.fitted(problem.empty)
+    stuck = problem.fitted(problem.empty.joined(ripple, {**true, 'cycles': 12.5}))
+    assert stuck.model.values(0)['cycles'] < 13.5
+    out = waved(steps, stuck, 0, start)
+    assert out.model.values(0)['cycles'] == pytest.approx(14.0, abs=0.05)
+    assert out.model.values(0)['amplitude'] == pytest.approx(0.1, rel=0.1)
+    assert waved(steps, out, 0, start) is out
+    bias = problem.fitted(
+        problem.empty.joined(Candidate('torque_bias', 'motor_body'), {'torque': 0.01})
+    )
+    assert waved(steps, bias, 0, start) is bias
 
 
 @pytest.mark.parametrize(('count', 'seen'), [(2, 2), (7, 5)])

@@ -87,3 +87,7 @@ def test_a_ripple_of_a_motor_that_turns_round_and_round_is_found_where_it_is():
     assert travel(problem, 'body') > 3.0 * np.pi
     starts = Starting(problem, problem.fitted(problem.empty, rounds=0)).of(RIPPLE)
     assert starts[0][1]['cycles'] == pytest.approx(14.0, abs=0.2)
+    # and at whole numbers of waves, which poles make
+    begun = {values['cycles'] for _, values in starts}
+    assert {float(round(waves)) for waves in begun} <= begun
+    assert 14.0 in begun
