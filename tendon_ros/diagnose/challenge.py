@@ -7,14 +7,13 @@ One cause after the other, round and round, until each has stood its ground.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-import math
 
 from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, is_polled
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.left_out import left_out, sets_the_unit
+from tendon_ros.diagnose.left_out import rest_of, sets_the_unit
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
@@ -99,43 +98,57 @@ class Challenge:
             cause = max(waiting, key=lambda c: worth[causes.index(c)])
             if self._steps.patience.over:
                 found.unmet.append(cause)
-                stood[cause] = self._without(found, found.final.model.causes.index(cause)), []
+                stood[cause] = rest_of(self._problem, found, causes.index(cause)), []
                 continue
             self._steps.report(
                 f'challenging {cause.effect} at {cause.place}', min(0.84, 0.5 + 0.03 * len(stood))
             )
-            k = found.final.model.causes.index(cause)
-            without = self._without(found, k)
-            if not brief:
-                state = waved(self._steps, found.final, k, without)
-                changed |= state is not found.final
-                found.states[-1] = state
-            state = found.final
-            rivals = self._challengers(found, cause, without, brief)
-            better = None
-            if replaced < REPLACED:
-                better = self._taken(found, self._better(found, cause, without, rivals, brief))
-            near = halfway(state, without, rivals)
+            before = found.final
+            without, rivals, better = self._contested(found, cause, brief, replaced < REPLACED)
+            changed |= found.final is not before
             if better is None:
                 stood[cause] = without, rivals
-                self._near[cause] = near
                 continue
-            replaced += 1
-            # who takes its place has the same rivals, and it is one of everybody's
-            self._near |= dict.fromkeys(set(better.model.causes) - set(state.model.causes), near)
-            self._near = {
-                c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()
-            }
-            changed = True
-            found.states[-1] = better
+            replaced, changed = replaced + 1, True
+            before, found.states[-1] = found.final, better
             if creeps:
                 self._converged(found)
             # who stood only just did so beside the one that has gone
-            stood = {c: s for c, s in stood.items() if self._clearly(state, *s)}
+            stood = {c: s for c, s in stood.items() if self._clearly(before, *s)}
         causes = found.final.model.causes
         others = {} if brief or self._steps.patience.over else instead(self._steps, found.final)
         found.rivals = [[*stood[c][1], *others.get(c, [])] for c in causes]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
+
+    def _contested(
+        self, found: Found, cause: Candidate, brief: bool, replace: bool
+    ) -> tuple[Fit, list[Rival], Fit | None]:
+        """
+        Challenge one cause of the last state.
+
+        :param found: a ripple's last state is that with the number of waves that fits best.
+        :param cause: which of its causes.
+        :param brief: whether only rivals matter that are far better.
+        :param replace: whether another one may take its place.
+        :return: the state without it, its rivals, and the state with a better one in its place.
+        """
+        k = found.final.model.causes.index(cause)
+        without = rest_of(self._problem, found, k)
+        if not brief:
+            found.states[-1] = waved(self._steps, found.final, k, without)
+        state = found.final
+        rivals = self._challengers(found, cause, without, brief)
+        better = None
+        if replace:
+            better = self._taken(found, self._better(found, cause, without, rivals, brief))
+        near = halfway(state, without, rivals)
+        if better is None:
+            self._near[cause] = near
+            return without, rivals, None
+        # who takes its place has the same rivals, and it is one of everybody's
+        self._near |= dict.fromkeys(set(better.model.causes) - set(state.model.causes), near)
+        self._near = {c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()}
+        return without, rivals, better
 
     def _idle(self, found: Found, known: Mapping[Candidate, Fit]) -> Fit | None:
         """
@@ -147,7 +160,7 @@ class Challenge:
         :param known: states without a cause that hold still.
         """
         found.without = [
-            known[cause] if cause in known else self._without(found, k)
+            known[cause] if cause in known else rest_of(self._problem, found, k)
             for k, cause in enumerate(found.final.model.causes)
         ]
         best = min(found.without, key=lambda fit: fit.cost, default=None)
@@ -230,22 +243,6 @@ class Challenge:
     def _no_excuse(self, model: Model, state: Fit) -> bool:
         """Return whether nothing has become an excuse beside a rival that was none before."""
         return excused(self._problem, model) <= excused(self._problem, state.model)
-
-    def _without(self, found: Found, k: int) -> Fit:
-        """
-        Return the final state without one cause, everything else fitted again.
-
-        Where the rest alone cannot be computed, the best state so far that had not the cause.
-        """
-        state = found.final
-        if len(state.model.causes) == 1:
-            return found.start
-        fit = left_out(self._problem, state, k, rounds=8, accuracy=1e-3)
-        if math.isfinite(fit.cost):
-            return fit
-        cause = state.model.causes[k]
-        others = [s for s in found.states if cause not in s.model.causes]
-        return min(others, key=lambda s: s.cost)
 
     def _better(
         self,

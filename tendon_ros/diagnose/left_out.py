@@ -9,11 +9,34 @@ same machine three times as heavy, and all torques and guesses have to come down
 from __future__ import annotations
 
 from dataclasses import replace
+import math
 
 import numpy as np
 
+from tendon_ros.diagnose.found import Found
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
+
+
+def rest_of(problem: Problem, found: Found, k: int) -> Fit:
+    """
+    Return the last state of a search without one cause, everything else fitted again.
+
+    :param problem: the data.
+    :param found: what was found.
+    :param k: which cause.
+    :return: the fit; where the rest alone cannot be computed, the best state so far that had not
+        the cause.
+    """
+    state = found.final
+    if len(state.model.causes) == 1:
+        return found.start
+    fit = left_out(problem, state, k, rounds=8, accuracy=1e-3)
+    if math.isfinite(fit.cost):
+        return fit
+    cause = state.model.causes[k]
+    others = [s for s in found.states if cause not in s.model.causes]
+    return min(others, key=lambda s: s.cost)
 
 
 def left_out(problem: Problem, state: Fit, k: int, rounds: int, accuracy: float) -> Fit:
