@@ -9,8 +9,8 @@ from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Judged
 from tendon_ros.effects import find
 from tendon_ros.report.blocks import Block, Columns, Details, Listing
 from tendon_ros.report.diagnosis_figures import channel_bars, rival_bars
+from tendon_ros.report.diagnosis_sums import in_floors
 from tendon_ros.report.diagnosis_traces import rmse, telling, trace_figure, trace_words
-from tendon_ros.report.diagnosis_verdict import in_floors
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,

@@ -8,7 +8,8 @@ from tendon_ros.diagnose.evidence import Rival, Step
 from tendon_ros.diagnose.result import ChannelGap, Diagnosis, Where
 from tendon_ros.diagnose.together import alone
 from tendon_ros.report.blocks import Bar, Bars, HeatMap, Tone
-from tendon_ros.report.diagnosis_verdict import by_place, floor_of, in_floors, worth
+from tendon_ros.report.diagnosis_sums import by_place, floor_of, in_floors
+from tendon_ros.report.diagnosis_verdict import worth
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,

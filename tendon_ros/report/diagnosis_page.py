@@ -28,16 +28,15 @@ from tendon_ros.report.diagnosis_figures import (
     where_map,
     worth_bars,
 )
+from tendon_ros.report.diagnosis_sums import in_floors, overall
 from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
     CLEARLY,
     headline,
-    in_floors,
     LABELS,
     LIKELY,
     likenesses,
-    overall,
     rest_words,
     sizes,
     UNIT,

@@ -9,12 +9,11 @@ from textwrap import wrap
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
 from tendon_ros.diagnose.together import alone
+from tendon_ros.report.diagnosis_sums import by_place, in_floors
 from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
-    by_place,
     headline,
-    in_floors,
     LIKELY,
     rest_words,
     sizes,

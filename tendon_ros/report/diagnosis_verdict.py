@@ -1,14 +1,13 @@
-"""The verdict of a diagnosis in a sentence with numbers, and the sums that it rests on."""
+"""The verdict of a diagnosis in a sentence with numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
-from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis, Where
+from tendon_ros.diagnose.result import Cause, Diagnosis, Where
 from tendon_ros.diagnose.together import alone
 from tendon_ros.effects import find
+from tendon_ros.report.diagnosis_sums import by_place, fitted_alone, floor_of, in_floors, overall
 from tendon_ros.report.diagnosis_words import (
     channel_words,
     count,
@@ -48,25 +47,6 @@ _MUCH = 1.5  # noise deviations that a reader would call a gap
 _NAMED = 3  # more effects than that make a sentence unreadable
 
 
-def overall(diagnosis: Diagnosis) -> tuple[float, float]:
-    """Return the gap before and after, over all channels, in noise standard deviations."""
-    known = [in_floors(g) for g in diagnosis.gap if g.noise_floor > 0.0]
-    if not known:
-        return 0.0, 0.0
-    before, after = np.sqrt(np.mean(np.square(known), axis=0))
-    return float(before), float(after)
-
-
-def fitted_alone(diagnosis: Diagnosis) -> float:
-    """Return the gap with numbers fitted within their tolerances alone, as :func:`overall`."""
-    known = [
-        (g.before if g.fitted is None else g.fitted) / g.noise_floor
-        for g in diagnosis.gap
-        if g.noise_floor > 0.0
-    ]
-    return float(np.sqrt(np.mean(np.square(known)))) if known else 0.0
-
-
 def beside_words(diagnosis: Diagnosis) -> str:
     """
     Return what is used beside the named causes.
@@ -84,21 +64,6 @@ def beside_words(diagnosis: Diagnosis) -> str:
         f'{"them" if many else "it"}: with all that it has, the gap of {before} noise deviations '
         f'shrinks to {after}.'
     )
-
-
-def in_floors(gap: ChannelGap) -> tuple[float, float]:
-    """Return a channel's gap before and after by its noise floor, infinite without one."""
-    if gap.noise_floor > 0.0:
-        return gap.before / gap.noise_floor, gap.after / gap.noise_floor
-    return np.inf, np.inf
-
-
-def by_place(where: tuple[Where, ...]) -> dict[str, float]:
-    """Return the share of each place over all regimes, most first."""
-    sums: dict[str, float] = {}
-    for entry in where:
-        sums[entry.place] = sums.get(entry.place, 0.0) + entry.share
-    return dict(sorted(sums.items(), key=lambda item: -item[1]))
 
 
 def where_words(where: tuple[Where, ...]) -> tuple[str, str]:
@@ -159,7 +124,7 @@ def headline(diagnosis: Diagnosis) -> str:
     during = f' ({diagnosis.unexplained.regime})' if diagnosis.unexplained.regime else ''
     at = f', most likely at {place_words(rest[0])}{during},' if rest else during
     shrinks = (
-        f'{_shrinks(diagnosis)} from {before} {_fitted(diagnosis)}to {after} noise deviations'
+        f'{_shrinks(diagnosis)} from {before}{_fitted(diagnosis)} to {after} noise deviations'
     )
     return (
         f'{named[:1].upper()}{named[1:]} {does} part of the gap: {shrinks}. The rest{at} is of no '
@@ -194,16 +159,16 @@ def rest_words(diagnosis: Diagnosis) -> str:
 def _gap(diagnosis: Diagnosis) -> str:
     """Return the gap in words, with what of it stays once numbers are fitted."""
     before, _ = overall(diagnosis)
-    return f'gap of {number(before)} noise deviations {_fitted(diagnosis)}'.rstrip()
+    return f'gap of {number(before)} noise deviations{_fitted(diagnosis)}'
 
 
 def _fitted(diagnosis: Diagnosis) -> str:
-    """Return what stays of a gap once numbers are fitted, where that is most of it."""
+    """Return what stays of a gap once numbers are fitted, in parentheses, where most goes."""
     before, _ = overall(diagnosis)
     alone = fitted_alone(diagnosis)
     if alone >= MOST * before:
         return ''
-    return f'({number(alone)} once what is guessed, or within its tolerance, is fitted) '
+    return f' ({number(alone)} once what is guessed, or within its tolerance, is fitted)'
 
 
 def _does_most(diagnosis: Diagnosis) -> bool:
@@ -312,8 +277,3 @@ def worth(diagnosis: Diagnosis, cause: Cause) -> tuple[str, str]:
     if floor > 0.0:
         text += f' (noise floor {number(factor * floor, 3)})'
     return channel_words(shrink.channel), text
-
-
-def floor_of(diagnosis: Diagnosis, channel: str) -> float:
-    """Return the noise floor of a channel in its unit, 0 where it is not known."""
-    return next((g.noise_floor for g in diagnosis.gap if g.channel == channel), 0.0)

@@ -6,8 +6,9 @@ import pytest
 
 from tendon_ros.diagnose.result import Candidate as Named
 from tendon_ros.diagnose.result import FittedParameter
+from tendon_ros.report.diagnosis_sums import overall
 from tendon_ros.report.diagnosis_text import summary
-from tendon_ros.report.diagnosis_verdict import headline, overall, rest_words, worth
+from tendon_ros.report.diagnosis_verdict import headline, rest_words, worth
 
 SENTENCES = {
     'no_gap': (
