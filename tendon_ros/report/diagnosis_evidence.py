@@ -89,12 +89,12 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
             (
                 channel_words(gap.channel),
                 *(
-                    '–' if x is None else f'{number(factor * x, 3)} {unit}'
+                    '–' if x is None else f'{number(factor * x, 3)}\u00a0{unit}'
                     for x in ((gap.before, gap.fitted) if fitted else (gap.before,))
                 ),
-                f'{after} {unit}',
+                f'{after}\u00a0{unit}',
                 interval,
-                f'{number(factor * gap.noise_floor, 3)} {unit}',
+                f'{number(factor * gap.noise_floor, 3)}\u00a0{unit}',
                 *(number(x) if gap.noise_floor > 0.0 else '–' for x in in_floors(gap)),
             )
         )
