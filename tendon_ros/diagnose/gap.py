@@ -35,27 +35,22 @@ class Off:
     blocks: tuple[float, ...]
 
 
-def gaps(
-    held: Problem, start: Model, final: Model, fitted: Model | None = None
-) -> tuple[ChannelGap, ...]:
+def gaps(held: Problem, start: Model, final: Model) -> tuple[ChannelGap, ...]:
     """
     Return the gap of each channel, the largest against its noise first.
 
     :param held: the bins that no fit has seen.
     :param start: what the instrument file says.
     :param final: what was found.
-    :param fitted: the file's numbers fitted within their tolerances, without any effect.
-    :return: the gaps of all of them.
+    :return: the gaps of both.
     """
     before, after = offs(held, start), offs(held, final)
-    between = offs(held, fitted) if fitted else {}
     noise = noise_of(held)
     rows = [
         ChannelGap(
             channel=channel,
             unit=unit_of(channel),
             before=before[channel].rms,
-            fitted=between[channel].rms if between else None,
             after=after[channel].rms,
             noise_floor=noise[channel],
             ci95=mean_square_interval(after[channel].blocks),

@@ -22,17 +22,11 @@ class _Frozen(BaseModel):
 
 
 class ChannelGap(_Frozen):
-    """
-    RMSE of one channel on segments that no fit has seen; ``ci95`` is that of ``after``.
-
-    ``fitted``: with numbers of the file fitted within their tolerances, and no effect added; none
-    in closed loop.
-    """
+    """RMSE of one channel on segments that no fit has seen; ``ci95`` is that of ``after``."""
 
     channel: str
     unit: str
     before: float
-    fitted: float | None = None
     after: float
     noise_floor: float
     ci95: Interval
@@ -118,13 +112,16 @@ class Diagnosis(_Frozen):
     The whole answer.
 
     ``beside``: effects that ``instrument.yaml`` has beside the named causes, since they hold on
-    what no fit has seen; each may stand in for something else. ``doubts``: why to mistrust the
+    what no fit has seen; each may stand in for something else. ``fitted``: by channel of ``gap``
+    the RMSE with numbers of the file fitted within their tolerances, and no effect added: what is
+    gone by that is no merit of a cause. ``doubts``: why to mistrust the
     verdict itself, such as a unit that cannot be; ``left_out``: all else that is to be said.
     """
 
     schema_: Literal[1] = Field(default=1, alias='schema')
     verdict: Verdict
     gap: tuple[ChannelGap, ...]
+    fitted: Mapping[str, float] = Field(default_factory=dict)
     closed_loop: tuple[ChannelGap, ...] = ()
     where: tuple[Where, ...]
     causes: tuple[Cause, ...]

@@ -31,7 +31,7 @@ from tendon_ros.diagnose.doubts import (
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.further import foretells
-from tendon_ros.diagnose.gap import gaps
+from tendon_ros.diagnose.gap import gaps, offs
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
@@ -140,7 +140,7 @@ def diagnose(
     told = causes_of(heard, found.start, final, weighed)
     causes = [cause for k, cause in zip(kept, told, strict=True) if k in held.named]
     beside = [cause for k, cause in zip(kept, told, strict=True) if k not in held.named]
-    channels = gaps(heard.held, file, final.model, found.start.model)
+    channels = gaps(heard.held, file, final.model)
     repaired = doubted(patched(heard.problem, final.model, given), channels)
     report('running the patched instrument in closed loop', 0.92)
     segments = heard.problem.rollouts.segments
@@ -156,6 +156,7 @@ def diagnose(
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
+        fitted={name: off.rms for name, off in offs(heard.held, found.start.model).items()},
         closed_loop=loops.gaps,
         where=places.listed,
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),

@@ -63,14 +63,14 @@ def evidence_sections(diagnosis: Diagnosis, evidence: Evidence) -> tuple[Section
     return tuple(sections)
 
 
-def gap_table(gaps: Sequence[ChannelGap]) -> Table:
+def gap_table(gaps: Sequence[ChannelGap], fitted: Mapping[str, float] | None = None) -> Table:
     """
     Return the gap of each channel in numbers.
 
     :param gaps: by channel.
+    :param fitted: RMSE with fitted numbers alone, by channel; no column without.
     :return: a row each: RMSE in the channel's unit and by its noise floor.
     """
-    fitted = any(gap.fitted is not None for gap in gaps)
     header = (
         'channel',
         'before',
@@ -89,8 +89,8 @@ def gap_table(gaps: Sequence[ChannelGap]) -> Table:
             (
                 channel_words(gap.channel),
                 *(
-                    '–' if x is None else f'{number(factor * x, 3)}\u00a0{unit}'
-                    for x in ((gap.before, gap.fitted) if fitted else (gap.before,))
+                    f'{number(factor * x, 3)}\u00a0{unit}'
+                    for x in (gap.before, *([fitted[gap.channel]] if fitted else []))
                 ),
                 f'{after}\u00a0{unit}',
                 interval,

@@ -229,7 +229,9 @@ def _how_far(diagnosis: Diagnosis, evidence: Evidence) -> Section:
     if diagnosis.causes:
         steps.append(worth_bars(diagnosis))
     if diagnosis.gap:
-        blocks.append(Details('The same in numbers', (gap_table(diagnosis.gap),)))
+        blocks.append(
+            Details('The same in numbers', (gap_table(diagnosis.gap, diagnosis.fitted),))
+        )
     if steps:
         blocks.append(Columns(tuple(steps)))
     return Section('How far it shrinks', tuple(blocks), 'how-far')

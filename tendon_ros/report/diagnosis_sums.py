@@ -19,7 +19,7 @@ def overall(diagnosis: Diagnosis) -> tuple[float, float]:
 def fitted_alone(diagnosis: Diagnosis) -> float:
     """Return the gap with numbers fitted within their tolerances alone, as :func:`overall`."""
     known = [
-        (g.before if g.fitted is None else g.fitted) / g.noise_floor
+        diagnosis.fitted.get(g.channel, g.before) / g.noise_floor
         for g in diagnosis.gap
         if g.noise_floor > 0.0
     ]

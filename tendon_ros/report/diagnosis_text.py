@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
 from textwrap import wrap
 
@@ -52,7 +52,11 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
         lines += _part('where', _where(diagnosis), len(by_place(diagnosis.where)) - _PLACES)
     which = [line for cause in diagnosis.causes[:_CAUSES] for line in _cause(diagnosis, cause)]
     lines += _part('which', which, len(diagnosis.causes) - _CAUSES)
-    lines += _part('gap', channel_rows(diagnosis.gap[:_CHANNELS]), len(diagnosis.gap) - _CHANNELS)
+    lines += _part(
+        'gap',
+        channel_rows(diagnosis.gap[:_CHANNELS], diagnosis.fitted),
+        len(diagnosis.gap) - _CHANNELS,
+    )
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
     lines += _numbers([number for number in moved if number.guessed or number.strained])
@@ -114,11 +118,14 @@ def _cause(diagnosis: Diagnosis, cause: Cause) -> Iterable[str]:
         yield f'  {channel}: {text}'
 
 
-def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
+def channel_rows(
+    gaps: Sequence[ChannelGap], fitted: Mapping[str, float] | None = None
+) -> list[str]:
     """
     Return a table of gaps.
 
     :param gaps: one row each.
+    :param fitted: RMSE with fitted numbers alone, by channel; no column without.
     :return: lines with a head; none without gaps.
     """
     if not gaps:
@@ -128,12 +135,10 @@ def channel_rows(gaps: Sequence[ChannelGap]) -> list[str]:
     ]
     for gap in gaps:
         factor, unit = gap_scale(gap)
-        rmse = (
-            '' if x is None else number(factor * x, 3)
-            for x in (gap.before, gap.fitted, gap.after, gap.noise_floor)
-        )
+        between = fitted[gap.channel] if fitted else gap.before
+        rmse = (number(factor * x, 3) for x in (gap.before, between, gap.after, gap.noise_floor))
         rows.append((channel_words(gap.channel), *rmse, unit, *map(_ratio, in_floors(gap))))
-    if all(gap.fitted is None for gap in gaps):
+    if not fitted:
         rows = [(*row[:2], *row[3:]) for row in rows]
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     left = (0, len(rows[0]) - 3)

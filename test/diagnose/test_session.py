@@ -55,6 +55,13 @@ def test_the_gap_shrinks_to_the_floor_on_data_that_no_fit_has_seen(two_outcome):
         assert cause.shrink.after < 0.7 * cause.shrink.without_this
 
 
+def test_what_numbers_alone_close_is_told_from_what_causes_do(two_outcome):
+    diagnosis = two_outcome.diagnosis
+    assert set(diagnosis.fitted) == {g.channel for g in diagnosis.gap}
+    worst = diagnosis.gap[0]
+    assert worst.after < 0.7 * diagnosis.fitted[worst.channel]
+
+
 def test_the_closed_loop_shows_it_too(two_outcome):
     effort = {g.channel: g for g in two_outcome.diagnosis.closed_loop}['actuator/pulley_L/effort']
     assert effort.after < 0.5 * effort.before

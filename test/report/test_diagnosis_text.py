@@ -61,11 +61,11 @@ def test_a_gap_that_guessed_numbers_close_is_said_with_both(case):
 
 def fitted_to(diagnosis, *floors):
     """Return a diagnosis whose numbers alone leave so many noise deviations of the channels."""
-    gaps = [
-        gap.model_copy(update={'fitted': much * gap.noise_floor})
-        for gap, much in zip(diagnosis.gap, floors, strict=False)
-    ]
-    return diagnosis.model_copy(update={'gap': tuple(gaps)})
+    fitted = {
+        gap.channel: much * gap.noise_floor
+        for gap, much in zip(diagnosis.gap, floors, strict=True)
+    }
+    return diagnosis.model_copy(update={'fitted': fitted})
 
 
 def test_what_numbers_alone_do_is_no_merit_of_the_causes(case):
@@ -76,7 +76,8 @@ def test_what_numbers_alone_do_is_no_merit_of_the_causes(case):
         assert said in headline(fitted_to(diagnosis, *[1.5] * most)).replace('\u00a0', ' ')
         # not where little goes by them
         assert 'once what is' not in headline(fitted_to(diagnosis, *[20.0] * most))
-    table = summary(fitted_to(case('one_cause')[0], 1.5, 1.5, 1.5, 1.5))
+    one = case('one_cause')[0]
+    table = summary(fitted_to(one, *[1.5] * len(one.gap)))
     [head] = [line for line in table.splitlines() if line.startswith('gap')]
     assert head.index('before') < head.index('fitted') < head.index('after')
 
