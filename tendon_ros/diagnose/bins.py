@@ -26,9 +26,8 @@ from tendon_ros.model.instrument import Instrument
 
 FloatArray = NDArray[np.float64]
 
-#: times a channel's noise that bins may get wrong of it before shorter ones are taken. Of three
-#: simulated benches and four rigs it was 0.0 to 0.7, and 2.4 where a flywheel swung within four
-#: bins: its coupling's damping and its motor's inertia made up for it then
+#: times a channel's noise that bins may get wrong of it before shorter ones are taken: what is less
+#: drowns in it
 DROWNS = 1.0
 
 
