@@ -26,8 +26,7 @@ from tendon_ros.model.instrument import Instrument
 
 FloatArray = NDArray[np.float64]
 
-#: times a channel's noise that bins may get wrong of it before shorter ones are taken: what is less
-#: drowns in it
+#: times a channel's noise that bins may get wrong of it before shorter ones are taken
 DROWNS = 1.0
 
 
