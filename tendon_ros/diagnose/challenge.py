@@ -6,7 +6,7 @@ One cause after the other, round and round, until each has stood its ground.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.bent import degenerate, is_polled
@@ -82,17 +82,7 @@ class Challenge:
         replaced = 0
         stood = self._stood
         found.unmet = []
-        while True:
-            waiting = [c for c in found.final.model.causes if c not in stood]
-            if not waiting:
-                changed |= self._converged(found)
-                idle = self._idle(found, {c: w for c, (w, _) in stood.items() if not changed})
-                if idle is None or replaced == REPLACED or self._steps.patience.over:
-                    break
-                replaced, changed = replaced + 1, True
-                stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
-                found.states[-1] = idle
-                continue
+        while waiting := [c for c in found.final.model.causes if c not in stood]:
             # what is missed most comes first: there may not be time for all
             causes, worth = found.final.model.causes, worths(self._problem, found.final)
             cause = max(waiting, key=lambda c: worth[causes.index(c)])
@@ -115,9 +105,14 @@ class Challenge:
                 self._converged(found)
             # who stood only just did so beside the one that has gone
             stood = {c: s for c, s in stood.items() if self._clearly(before, *s)}
+        changed |= self._converged(found)
         causes = found.final.model.causes
         others = {} if brief or self._steps.patience.over else instead(self._steps, found.final)
         found.rivals = [[*stood[c][1], *others.get(c, [])] for c in causes]
+        found.without = [
+            rest_of(self._problem, found, k) if changed else stood[c][0]
+            for k, c in enumerate(causes)
+        ]
         self._stood = {c: s for c, s in stood.items() if self._clearly(found.final, *s)}
 
     def _contested(
@@ -149,22 +144,6 @@ class Challenge:
         self._near |= dict.fromkeys(set(better.model.causes) - set(state.model.causes), near)
         self._near = {c: list(dict.fromkeys([*others, cause])) for c, others in self._near.items()}
         return without, rivals, better
-
-    def _idle(self, found: Found, known: Mapping[Candidate, Fit]) -> Fit | None:
-        """
-        Return the last state without a cause that only holds it in a worse valley; None without.
-
-        What a cause was beside others says nothing of what it is once they were replaced.
-
-        :param found: its states without a cause are replaced.
-        :param known: states without a cause that hold still.
-        """
-        found.without = [
-            known[cause] if cause in known else rest_of(self._problem, found, k)
-            for k, cause in enumerate(found.final.model.causes)
-        ]
-        best = min(found.without, key=lambda fit: fit.cost, default=None)
-        return best if best is not None and best.cost <= found.final.cost else None
 
     def _converged(self, found: Found) -> bool:
         """

@@ -141,18 +141,3 @@ def test_who_is_dropped_at_once_has_not_taken_the_place(bench, measured_on, monk
     challenge.of(found)
     assert found.final.model.causes == (COULOMB,)
     assert found.final.cost < 1.01 * state.cost
-
-
-def test_who_only_holds_the_others_in_a_worse_valley_goes(bench, measured_on, monkeypatch):
-    run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.05}))
-    problem = prepared([run], bench).problem
-    true = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
-    stuck = problem.fitted(true.model.joined(DAMPED, {'damping': 2.0}), rounds=0)
-    assert stuck.cost > 2.0 * true.cost
-    found = Found(states=[problem.fitted(problem.empty), stuck])
-    challenge = Challenge(Steps(problem, [COULOMB, DAMPED], 1, lambda *_: None), {})
-    monkeypatch.setattr(challenge, '_converged', lambda _: False)  # it is as far as it comes
-    challenge.of(found)
-    assert found.final.model.causes == (COULOMB,)
-    assert [fit.model.causes for fit in found.without] == [()]
-    assert len(found.rivals) == 1
