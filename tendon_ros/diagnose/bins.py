@@ -39,8 +39,8 @@ class Binned:
     (channels, bins); ``noise``: what is known of it, whatever the model.
     """
 
-    segments: list[Segment]
-    predicted: list[FloatArray]
+    segments: Sequence[Segment]
+    predicted: Sequence[FloatArray]
     noise: Noise
 
 
@@ -85,18 +85,18 @@ def _thinned(recording: Recording, instrument: Instrument) -> Recording:
 
 def _run(
     recordings: Sequence[Recording], instrument: Instrument, period: float
-) -> tuple[list[Segment], list[FloatArray]]:
+) -> tuple[Sequence[Segment], Sequence[FloatArray]]:
     """Return recordings on bins of a length [s], and the channels as the file has them there."""
     segments = [segment_of(instrument, r, period) for r in recordings]
     segments = [placed(instrument, s, r) for s, r in zip(segments, recordings, strict=True)]
-    return segments, [*Rollouts(instrument, segments).predicted([[] for _ in segments])]
+    return segments, Rollouts(instrument, segments).predicted([[] for _ in segments])
 
 
 def _heard(
     recordings: Sequence[Recording],
     instrument: Instrument,
     segments: Sequence[Segment],
-    predicted: list[FloatArray],
+    predicted: Sequence[FloatArray],
 ) -> Binned:
     """Return recordings on bins with their noise."""
     noise = noise_of_counts(instrument, segments, recordings, predicted)

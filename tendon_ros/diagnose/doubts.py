@@ -135,19 +135,18 @@ def lost_words(ready: Prepared, final: Model) -> list[str]:
     """
     problem = ready.whole
     off, noise = offs(problem, final), noise_of(problem)
-    read: dict[str, list[float]] = {}
+    varies: dict[str, float] = {}
     for segment in problem.rollouts.segments:
         for m in segment.measured:
-            if m.sensor.kind == 'angle':
-                read.setdefault(m.sensor.channel, []).append(float(np.nanstd(m.value)))
+            if m.sensor.kind == 'angle' and m.sensor.channel in off:
+                most = max(varies.get(m.sensor.channel, 0.0), float(np.nanstd(m.value)))
+                varies[m.sensor.channel] = most
     return [
         f'{channel} varies by {spread:.2g} rad, and with all that was found it is foretold to '
         f'{off[channel].rms:.2g}: a column that was taken for another, a unit (degrees as rad) or '
         'a wrong route in the file is likelier than any effect'
-        for channel, spreads in read.items()
-        if channel in off
-        for spread in [max(spreads)]
-        if off[channel].rms > LOST * spread and off[channel].rms > UNFORETOLD * noise[channel]
+        for channel, spread in varies.items()
+        if off[channel].rms > max(LOST * spread, UNFORETOLD * noise[channel])
     ]
 
 

@@ -71,16 +71,11 @@ def magnitudes(instrument: Instrument, magnitude: Magnitude) -> Mapping[str, Mag
     :return: by place; less than at the motors nowhere.
     """
     gears = _gears(instrument)
-    return {
-        place: magnitude.behind(gears.get(place.removeprefix('pulley_'), 1.0))
-        if place.startswith('pulley_')
-        else magnitude
-        for place in instrument.places()
-    }
+    return {place: magnitude.behind(gears.get(place, 1.0)) for place in instrument.places()}
 
 
 def _gears(instrument: Instrument) -> dict[str, float]:
-    """Return by how much motors turn faster than inner pulleys, if nothing stretches."""
+    """Return by how much motors turn faster than inner pulleys if nothing stretches, by place."""
     if not instrument.links:
         return {}
     driven = [instrument.index(pulley) for pulley in instrument.driven]
@@ -96,7 +91,7 @@ def _gears(instrument: Instrument) -> dict[str, float]:
         turns[others] = np.linalg.lstsq(rows[:, others], -rows[:, own])[0]
         gear = float(np.abs(turns[driven]).max(initial=0.0))
         if gear > GEARED:
-            found[pulley] = gear
+            found[f'pulley_{pulley}'] = gear
     return found
 
 
