@@ -43,13 +43,15 @@ def told() -> Iterator[Callable[[str, float], None]]:
         *columns, console=console, transient=True, disable=not console.is_terminal
     ) as bars:
         task = bars.add_task('starting', total=1.0)
-        last = ''
+        last, farthest = '', 0.0
 
         def report(what: str, done: float) -> None:
-            nonlocal last
-            bars.update(task, description=what, completed=done)
+            nonlocal last, farthest
+            # a search that looks again is no farther back than it was
+            farthest = max(farthest, done)
+            bars.update(task, description=what, completed=farthest)
             if not console.is_terminal and what != last:
-                console.print(f'{done:4.0%} {what}')
+                console.print(f'{farthest:4.0%} {what}')
             last = what
 
         yield report

@@ -157,6 +157,18 @@ def test_no_motor_position_at_all(bench, sound):
         admitted(blinder, bench)
 
 
+def test_what_is_lacking_may_be_there_under_another_name(bench, sound):
+    def misspelt(name):
+        return name.replace('pulley_L', 'pulley_Left') if name.endswith('position') else name
+
+    renamed = [
+        replace(r, channels={misspelt(n): c for n, c in r.channels.items()}) for r in sound
+    ]
+    told = r'pulley_Left/position left out: .* has no pulley_Left; .*; then: .*a motor unmeasured'
+    with pytest.raises(RecordingError, match=told):
+        admitted(renamed, bench)
+
+
 def test_nothing_to_compare(bench, sound):
     bare = [
         replace(

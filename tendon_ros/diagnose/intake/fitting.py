@@ -25,10 +25,13 @@ def fitting(recordings: Sequence[Recording], instrument: Instrument) -> Sifted:
     kept: list[Recording] = []
     sentences: list[str] = []
     for recording in recordings:
-        cleaned, said = _known(recording, instrument)
-        fault = _misfit(cleaned, recording, instrument)
-        if fault:
+        if fault := _other_motors(recording, instrument):
             sentences.append(fault)
+            continue
+        cleaned, said = _known(recording, instrument)
+        if fault := _lacking(cleaned, instrument):
+            # what is lacking may be there under another name
+            sentences.append('; then: '.join([*said, fault]))
         else:
             sentences += said
             kept.append(cleaned)
@@ -65,25 +68,30 @@ def _known(recording: Recording, instrument: Instrument) -> tuple[Recording, lis
     return without(recording, recording.channels.keys() - names), said
 
 
-def _misfit(cleaned: Recording, recording: Recording, instrument: Instrument) -> str:
-    """Say why a recording cannot be used with the instrument; nothing where it can."""
-    needed = motor_channels(instrument)
-    missing = [name for name in needed if name not in cleaned]
+def _other_motors(recording: Recording, instrument: Instrument) -> str:
+    """Say that a recording has none of the instrument's motors; nothing where it has one."""
     motors = {n.split('/')[1] for n in recording.channels if n.startswith('actuator/')}
     own = {f'pulley_{name}' for name in instrument.driven}
-    if not motors & own:
-        return (
-            f'{recording.name}: the instrument file does not fit: it drives {listed(own)}, the '
-            f'recording has the motors {listed(motors)}; give the file of this rig, or name the '
-            'joints alike'
-        )
+    if motors & own:
+        return ''
+    return (
+        f'{recording.name}: the instrument file does not fit: it drives {listed(own)}, the '
+        f'recording has the motors {listed(motors)}; give the file of this rig, or name the '
+        'joints alike'
+    )
+
+
+def _lacking(recording: Recording, instrument: Instrument) -> str:
+    """Say what a recording lacks to be compared with the instrument; nothing where it can be."""
+    needed = motor_channels(instrument)
+    missing = [name for name in needed if name not in recording]
     if missing:
         what = 'no motor position at all' if len(missing) == len(needed) else 'a motor unmeasured'
         return (
             f'{recording.name}: {what}: without {listed(missing)} the model cannot be driven; '
             'record it'
         )
-    if not compared(cleaned, instrument):
+    if not compared(recording, instrument):
         positions = {
             channel_name('actuator', f'pulley_{p}', 'position') for p in instrument.driven
         }
