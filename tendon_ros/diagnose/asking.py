@@ -15,6 +15,8 @@ from tendon_ros.identify.screening import Proposal
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
 BELOW = 0.05  # part of the range of a reading that noise may make negative
+#: what may shift readings below zero that have no sign
+SHIFT = 'load_cell_bias'
 
 
 def asked_again(
@@ -66,16 +68,36 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
     :return: whether no reading of the sensor is negative by more than noise, and by the file some
         would be: a load cell on which the tip can only press has no sign to lose.
     """
-    if not candidate.switches:
+    if not candidate.switches or _reads_below_zero(problem, candidate.place) is not False:
         return False
+    without = lost(problem.empty, candidate)
+    return not np.allclose(problem.left(without), problem.left(problem.empty))
+
+
+def signed(problem: Problem, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """
+    Return the lost signs among candidates that nobody has to ask, since readings show the sign.
+
+    :param problem: the data.
+    :param candidates: all that may be named.
+    :return: those of sensors that read below zero by more than noise, and that no bias shifts.
+    """
+    return [
+        c
+        for c in candidates
+        if c.switches
+        and not any(one.effect == SHIFT and one.place == c.place for one in candidates)
+        and _reads_below_zero(problem, c.place)
+    ]
+
+
+def _reads_below_zero(problem: Problem, sensor: str) -> bool | None:
+    """Return whether a sensor reads below zero by more than noise; None where it read nothing."""
     values = [
         measured.value[np.isfinite(measured.value)]
         for segment in problem.rollouts.segments
         for measured in segment.measured
-        if measured.sensor.name == candidate.place
+        if measured.sensor.name == sensor
     ]
     read = np.concatenate(values) if values else np.zeros(0)
-    if not read.size or float(read.min()) <= -BELOW * float(np.ptp(read)):
-        return False
-    without = lost(problem.empty, candidate)
-    return not np.allclose(problem.left(without), problem.left(problem.empty))
+    return float(read.min()) <= -BELOW * float(np.ptp(read)) if read.size else None

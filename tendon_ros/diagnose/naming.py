@@ -102,6 +102,7 @@ def judged(
     candidates: Sequence[Candidate],
     strain: Mapping[tuple[str, str], float],
     lone: Collection[str] = (),
+    signed: Collection[Candidate] = (),
 ) -> tuple[Judged, ...]:
     """
     Return every candidate with its probability, and whether these data could have shown it.
@@ -113,6 +114,7 @@ def judged(
     :param strain: by effect and place how many deviations a number has moved that was measured
         (:func:`strained`).
     :param lone: places of bodies that nothing is linked with.
+    :param signed: lost signs of sensors whose readings show it.
     :return: most probable first.
     """
     named = {(c.effect, c.place): c for c in causes}
@@ -144,6 +146,8 @@ def judged(
             why = (
                 'it acts between bodies: describe what is behind it as a second one, coupled to it'
             )
+        elif candidate in signed:
+            why = 'its readings go below zero by more than noise'
         elif key in strain:
             why = (
                 f'its number in the file has moved by {strain[key]:.2g} deviations of its '

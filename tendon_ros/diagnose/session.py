@@ -14,6 +14,7 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.alike import leaning
+from tendon_ros.diagnose.asking import signed
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words, polled_words
@@ -111,8 +112,10 @@ def diagnose(
     measured = {name for r in runs for name in r.channels}
     candidates = everyone(instrument, sorted(measured), withhold, magnitude_of(runs, instrument))
     patience = Patience(seconds, ready.problem.rollouts.effort)
-    ready = leaning(ready, candidates, report)
-    ready, found = Looks(ready, candidates, jobs, report, memory, patience).taken()
+    seen = signed(ready.problem, candidates)
+    asked = [c for c in candidates if c not in seen]
+    ready = leaning(ready, asked, report)
+    ready, found = Looks(ready, asked, jobs, report, memory, patience).taken()
     problem = ready.problem
     report('judging', 0.85)
     held = belief(ready, found)
@@ -168,6 +171,7 @@ def diagnose(
             candidates,
             strained(heard.problem, final.model),
             alone(instrument),
+            seen,
         ),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime

@@ -8,8 +8,9 @@ import pytest
 from tendon_ros.base.recording import Channel
 from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import looks
-from tendon_ros.diagnose.asking import lost, may_be_signless
+from tendon_ros.diagnose.asking import lost, may_be_signless, signed
 from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.naming import judged
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
@@ -49,6 +50,27 @@ def test_what_reads_below_zero_has_its_sign(axis, recorded, effects, told):
     problem = prepared([recorded(*effects)], axis).problem
     assert may_be_signless(problem, SIGN) is told
     assert not may_be_signless(problem, Candidate('joint_spring', 'pulley_axis'))
+
+
+@pytest.mark.parametrize(('effects', 'seen'), [((SPRING,), True), ((SPRING, LOST), False)])
+def test_a_sign_that_readings_show_is_not_lost(axis, recorded, effects, seen):
+    problem = prepared([recorded(*effects)], axis).problem
+    candidates = everyone(axis, [EFFORT])
+    assert signed(problem, candidates) == [SIGN] * seen
+    # the page says why it is none
+    bare = Found(states=[problem.fitted(problem.empty)], rivals=[], without=[])
+    rows = judged(bare, [], [], candidates, {}, (), signed(problem, candidates))
+    [why] = [row.why_not for row in rows if row.effect == SIGN.effect]
+    assert (why == 'its readings go below zero by more than noise') is seen
+
+
+def test_a_load_cell_may_be_biased_below_zero(bench, measured_on):
+    low = ('load_cell_bias', 'load_cell', {'force': -1.0})
+    run = measured_on(bench, low, touching=True)
+    problem = prepared([run], bench).problem
+    lone = [Candidate('sensor_rectified', 'load_cell')]
+    assert signed(problem, lone) == lone
+    assert signed(problem, [*lone, Candidate('load_cell_bias', 'load_cell')]) == []
 
 
 def test_noise_about_zero_is_no_sign(axis, recorded):
