@@ -14,6 +14,7 @@ from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.gap import noise_of, offs
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import Instrument
 
 FloatArray = NDArray[np.float64]
@@ -28,6 +29,9 @@ WEAK = 20.0
 MISCOUNTED = 1.25
 #: part of what an angle varies by, and times its noise, beyond which it is not foretold at all
 LOST, UNFORETOLD = 0.5, 10.0
+#: times its noise that a channel is off from which on one wants to know when; and the part of that
+#: which lies in one second, where something happened once
+OFF, AT_ONCE = 2.0, 0.5
 #: effects, and numbers of the file, by which torques or motions are another number of times as
 #: large: other guesses may well be off by fifty times
 SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
@@ -148,6 +152,59 @@ def lost_words(ready: Prepared, final: Model) -> list[str]:
         for channel, spread in varies.items()
         if off[channel].rms > max(LOST * spread, UNFORETOLD * noise[channel])
     ]
+
+
+def brief_words(ready: Prepared, final: Model) -> list[str]:
+    """
+    Say of which channels most of what stays lies in one second: something happened there.
+
+    :param ready: the problem, with its noise.
+    :param final: what was found.
+    :return: a sentence for each.
+    """
+    found = []
+    noise = noise_of(ready.whole)
+    for channel, seconds in _seconds(ready.whole, final).items():
+        worst = max(seconds, key=lambda one: one.misfit)
+        # every moment counts in two of them
+        every = 0.5 * sum(one.misfit for one in seconds)
+        usual = 0.5 * noise[channel] ** 2 * sum(one.samples for one in seconds)
+        if every > OFF**2 * usual and worst.misfit > AT_ONCE * every:
+            found.append(
+                f'{worst.misfit / every:.0%} of what stays of {channel} lies between '
+                f'{worst.begin:.1f} and {worst.begin + 1.0:.1f} s of {worst.recording}: something '
+                'happened there once (lost counts, a knock, a late message), and what acts all '
+                'along is told the worse for it; leave that second out, or record again'
+            )
+    return found
+
+
+@dataclass(frozen=True)
+class _Second:
+    """What a model leaves of a channel in one second, as a sum of squares in its unit."""
+
+    recording: str
+    begin: float
+    misfit: float
+    samples: int
+
+
+def _seconds(problem: Problem, model: Model) -> dict[str, list[_Second]]:
+    """Return by channel what a model leaves, by seconds that begin every half second."""
+    found: dict[str, list[_Second]] = {}
+    predicted = problem.rollouts.predicted(problem.uses(model))
+    for segment, rows, masks in zip(
+        problem.rollouts.segments, predicted, problem.masks, strict=True
+    ):
+        half = np.floor(2.0 * (segment.start + segment.time)).astype(np.int64)
+        for m, row, mask in zip(segment.measured, rows, masks, strict=True):
+            for begin in range(int(half[0]) - 1, int(half[-1]) + 1):
+                off = (m.value - row)[mask & (half >= begin) & (half <= begin + 1)]
+                if off.size:
+                    found.setdefault(m.sensor.channel, []).append(
+                        _Second(segment.name, 0.5 * begin, float(off @ off), off.size)
+                    )
+    return found
 
 
 def loud_words(ready: Prepared) -> list[str]:

@@ -17,7 +17,7 @@ from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import BOUNDLESS, LEFT_NOISE, probability, Signs
 from tendon_ros.diagnose.undoing import its_own
-from tendon_ros.diagnose.worth import by_channel, gains, LEAST_IN_ONE, TAKES_EVENT, TIMES_EVENT
+from tendon_ros.diagnose.worth import by_channel, gains, LEAST, LEAST_IN_ONE, TAKES_EVENT, TIMES_EVENT
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 
@@ -213,16 +213,20 @@ def spoils(ready: Prepared, found: Found, without: Fit) -> bool:
     :param found: what the search has found.
     :param without: the fit without one cause, or without several.
     :return: whether it loses more than seconds of no meaning would on average, and more than
-        nothing beside what it gains where it was fitted.
+        nothing beside what it gains where it was fitted; or more than it gains there, be it in one
+        second.
     """
     final = found.final
     gain = saved(ready.held, without.model, final.model)
-    samples = sum(int(mask.sum()) for mask in ready.held.masks) / max(len(final.left), 1)
+    fitted = max(0.0, without.cost - final.cost)
+    held = sum(int(mask.sum()) for mask in ready.held.masks)
+    samples = held / max(len(final.left), 1)
     # what was held out may be a hold, of which a damping says next to nothing
-    nothing = NOTHING * max(0.0, without.cost - final.cost) * samples
+    nothing = NOTHING * fitted * samples
     strain = max(0.0, _strain(without) - _strain(final)) * samples
+    chance = float(np.sqrt(gain @ gain)) + nothing + strain
     # what cannot be computed there is no help either
-    return not float(gain.sum()) >= -float(np.sqrt(gain @ gain)) - nothing - strain
+    return not float(gain.sum()) >= -min(chance, fitted + LEAST * held)
 
 
 #: noise power per sample up to which what is left without a cause may be noise

@@ -21,6 +21,7 @@ from tendon_ros.diagnose.clock import early_words, polled_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.doubts import (
     absurd_words,
+    brief_words,
     coarse_words,
     lost_words,
     loud_words,
@@ -183,6 +184,7 @@ def diagnose(
             *weak_words(heard, final.model),
             *scaled_words(final.model),
             *lost_words(heard, final.model),
+            *brief_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *(loud_words(heard) if verdict == 'no_gap' else []),
         ),

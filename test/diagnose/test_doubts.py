@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.doubts import (
     absurd_words,
+    brief_words,
     coarse_words,
     lost_words,
     loud_words,
@@ -129,3 +130,19 @@ def test_a_guess_that_is_far_off_makes_one_doubt_a_unit(value, ci95, guessed, sa
     one = Moved('pulley_body', 'inertia', value, ci95, '1', guessed)
     assert one.absurd == said
     assert len(absurd_words([one])) == said
+
+
+@pytest.mark.parametrize(('knocks', 'told'), [((), []), ((4.0,), ['3.5']), ((2.2, 4.1, 6.3), [])])
+def test_what_happened_once_is_said_where_most_of_what_stays_lies(
+    measured_on, spoilt, knocks, told
+):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '8 s'),))
+
+    def knocked(time, torque):
+        at = sum((np.exp(-(((time - t) / 0.02) ** 2)) for t in knocks), np.zeros(time.size))
+        return time, torque + 2.0 * at
+
+    ready = prepared(spoilt((run,), EFFORT, knocked), body)
+    words = brief_words(ready, ready.whole.empty)
+    assert [w.split(' lies between ')[1].split()[0] for w in words] == told

@@ -9,6 +9,7 @@ import pytest
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.intake import admitted
+from tendon_ros.diagnose.intake.breaks import breaks_of
 
 
 def every_channel(recording, change):
@@ -106,6 +107,25 @@ def test_a_clock_that_jumped_back_leaves_a_leap(bench, sound):
     assert len(intake.recordings) == 3
     assert 'leaps by' in intake.left_out[0]
     assert 'the clock jumped back' in intake.left_out[0]
+
+
+def test_counts_that_are_lost_while_a_motor_turns_leave_a_leap(bench, sound):
+    """A few times the steps around it, and another way than they go."""
+    angle = sound[1]['actuator/pulley_M/position']
+    steps = np.diff(angle.value)
+    at = 1 + int(np.argmax(np.abs(steps)))
+    lost = angle.value - 5.0 * steps[at - 1] * (np.arange(angle.value.size) > at)
+    intake = admitted([sound[0], sound[1].with_channels([replace(angle, value=lost)])], bench)
+    assert len(intake.recordings) == 3
+    assert f'leaps by {4.0 * abs(steps[at]):.2g}'[:10] in intake.left_out[0]
+
+
+def test_a_torque_may_leap():
+    """A voltage that is all that drives a motor is set anew from one message to the next."""
+    time = np.arange(0.0, 4.0, 0.02)
+    torque = 0.01 * np.sin(7.0 * time) + np.where(time > 2.0, 0.5, 0.0)
+    assert breaks_of(Channel('actuator/pulley_left/effort', time, torque)) == []
+    assert len(breaks_of(Channel('actuator/pulley_left/position', time, torque))) == 1
 
 
 def test_a_reading_that_begins_anew_each_turn_is_told_from_a_clock(bench, sound):

@@ -88,6 +88,17 @@ def test_a_loss_that_seconds_differ_by_anyway_spoils_nothing(ready, monkeypatch,
     assert spoils(ready, found, found.final) is spoilt
 
 
+@pytest.mark.parametrize(('part', 'spoilt'), [(0.5, False), (1.5, True)])
+def test_what_one_second_loses_may_be_no_more_than_what_is_gained(
+    ready, monkeypatch, part, spoilt
+):
+    """A leap of an encoder is one second: it differs from all others by itself."""
+    found = found_with(ready.problem, FRICTION)
+    gained = found.without[0].cost - found.final.cost
+    monkeypatch.setattr(judge, 'saved', lambda *_: np.array([1.0, -part * gained, -1.0]))
+    assert spoils(ready, found, found.without[0]) is spoilt
+
+
 def test_numbers_that_have_to_be_off_without_a_cause_speak_for_it(ready, monkeypatch):
     found = found_with(ready.problem, FRICTION)
     [without] = found.without

@@ -1,4 +1,4 @@
-"""Where the stamps of a motor's position go wrong: gaps, clock jumps, leaps."""
+"""Where the stamps of a motor's position, or its counts, go wrong: gaps, clock jumps, leaps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from tendon_ros.diagnose.intake.motion import STILL
 GAP = 8.0  # usual spacings
 SHORT_GAP = 0.03  # [s] that interpolation bridges whatever the sampling
 LONG_GAP = 0.5  # [s] beyond which the motion is unknown
-LEAP = 20.0  # times the steps around it: no motor moves like that between two samples
+#: times the steps around it, or times what these differ by from one to the next and some times
+#: them, by which a step is another than those beside it: no motor moves like that
+LEAP, FASTER = 20.0, 3.0
 AROUND = 5  # samples
 TURN = 2.0 * math.pi  # [rad]
 ALL = 0.9  # part of all that it reads by which a reading begins anew
@@ -32,12 +34,13 @@ class Break:
 
 def breaks_of(channel: Channel) -> list[Break]:
     """
-    Return the breaks in a motor's position.
+    Return the breaks in what drives the model.
 
-    :param channel: the position.
+    :param channel: a motor's position; or its torque, which may well leap.
     :return: in the order of time; gaps in which the motor stood still are none, unless long.
     """
-    return sorted([*_gaps(channel), *_leaps(channel)], key=lambda found: found.start)
+    leaps = _leaps(channel) if channel.name.endswith('/position') else ()
+    return sorted([*_gaps(channel), *leaps], key=lambda found: found.start)
 
 
 def missing_share(channel: Channel) -> float:
@@ -75,16 +78,22 @@ def _gaps(channel: Channel) -> Iterator[Break]:
 
 def _leaps(channel: Channel) -> Iterator[Break]:
     time = channel.time
-    leap = np.abs(np.diff(channel.value))
+    steps = np.diff(channel.value)
+    leap = np.abs(steps)
     usual = channel.sampling
-    beside = np.maximum(np.append(0.0, leap[:-1]), np.append(leap[1:], 0.0))
-    for n in np.flatnonzero(leap > np.maximum(STILL, LEAP * beside)).tolist():
+    first, last = np.append(0.0, steps[:-1]), np.append(steps[1:], 0.0)
+    off = np.abs(steps - 0.5 * (first + last))
+    beside = np.maximum(np.abs(first), np.abs(last))
+    for n in np.flatnonzero(off > np.maximum(STILL, FASTER * beside)).tolist():
         if time[n + 1] - time[n] > GAP * usual or not AROUND <= n < leap.size - AROUND:
             continue
-        left, right = leap[n - AROUND : n].max(), leap[n + 1 : n + 1 + AROUND].max()
+        before, after_it = steps[n - AROUND : n], steps[n + 1 : n + 1 + AROUND]
+        left, right = np.abs(before).max(), np.abs(after_it).max()
         pace = max(left, right)
+        uneven = max(np.abs(np.diff(before)).max(), np.abs(np.diff(after_it)).max())
         # in motion on both sides: between rests, a small servo may well go like that
-        if min(left, right) > 0.0 and leap[n] > LEAP * pace:
+        moves = min(left, right) > 0.0
+        if moves and off[n] > max(FASTER * pace, LEAP * min(pace, uneven)):
             after = '360 deg' if abs(leap[n] - TURN) <= 2.0 * pace else f'{leap[n]:.4g} rad'
             cause = (
                 f'the reading begins anew: import it with wrap: {after} in its mapping'
