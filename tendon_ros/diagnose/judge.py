@@ -17,7 +17,14 @@ from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import BOUNDLESS, LEFT_NOISE, probability, Signs
 from tendon_ros.diagnose.undoing import its_own
-from tendon_ros.diagnose.worth import by_channel, gains, LEAST, LEAST_IN_ONE, TAKES_EVENT, TIMES_EVENT
+from tendon_ros.diagnose.worth import (
+    by_channel,
+    gains,
+    LEAST,
+    LEAST_IN_ONE,
+    TAKES_EVENT,
+    TIMES_EVENT,
+)
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
 

@@ -161,9 +161,7 @@ def test_what_is_lacking_may_be_there_under_another_name(bench, sound):
     def misspelt(name):
         return name.replace('pulley_L', 'pulley_Left') if name.endswith('position') else name
 
-    renamed = [
-        replace(r, channels={misspelt(n): c for n, c in r.channels.items()}) for r in sound
-    ]
+    renamed = [replace(r, channels={misspelt(n): c for n, c in r.channels.items()}) for r in sound]
     told = r'pulley_Left/position left out: .* has no pulley_Left; .*; then: .*a motor unmeasured'
     with pytest.raises(RecordingError, match=told):
         admitted(renamed, bench)
