@@ -10,7 +10,10 @@ from tendon_ros.model.instrument import Sensor
 
 FloatArray = NDArray[np.float64]
 
-EDGE = 1e-6  # part of a bin within which a stamp is on its edge
+#: part of the time between readings within which one is on the edge of a bin, whose stamp may
+#: scatter; and the same where there are bins without any, as part of a bin
+EDGE, SELDOM = 0.25, 1e-6
+ALL = 1.1  # bins from one reading to the next, up to which nearly all have one
 
 
 def binned(
@@ -29,10 +32,11 @@ def binned(
     """
     place = (channel.time - start) / period
     edge = np.round(place)
-    between = np.abs(place - edge) < EDGE
-    # a reading on an edge belongs to both bins, whatever the last digit of its stamp says: half a
-    # sample between a torque and the motion that asks for it is a sixth of what shakes a hundred
-    # times a second
+    often = channel.sampling < ALL * period
+    between = np.abs(place - edge) < (EDGE * channel.sampling / period if often else SELDOM)
+    # a reading on an edge belongs to both bins, whatever its stamp says: half a sample between a
+    # torque and the motion that asks for it is a sixth of what shakes a hundred times a second,
+    # and where readings stray across edges, one bin has two and the next one none
     alone, shared = np.flatnonzero(~between), np.flatnonzero(between)
     index = np.concatenate([np.floor(place[alone]), edge[shared] - 1.0, edge[shared]])
     inside = (index >= 0.0) & (index < bins)
@@ -46,19 +50,16 @@ def binned(
 
     count, squares = added(part), added(part**2)
     total, moment = added(part * channel.value[which]), added(part * (channel.time[which] - start))
-    with np.errstate(invalid='ignore', divide='ignore'):
-        value = total / count
-        late = moment / count - period * (np.arange(bins) + 0.5)
     known = count > 0
-    if known.sum() > 2:
-        # the mean belongs to the mean of the stamps, which need not be the bin's middle
-        slope = np.gradient(
-            np.where(
-                known, value, np.interp(np.arange(bins), np.flatnonzero(known), value[known])
-            ),
-            period,
-        )
-        value = np.where(known, value - slope * late, np.nan)
+    middles = period * (np.arange(bins) + 0.5)
+    value = np.full(bins, np.nan)
+    value[known] = total[known] / count[known]
+    # the mean belongs to the mean of the stamps, which need not be the bin's middle
+    mean = moment[known] / count[known]
+    apart, first, back = np.unique(mean, return_index=True, return_inverse=True)
+    if apart.size > 2:
+        slope = np.gradient(value[known][first], apart)[back]
+        value[known] -= slope * (mean - middles[known])
     quantised = sensor.resolution / np.sqrt(12.0)
     readings = count[known] ** 2 / squares[known]
     per_bin = max(1.0, float(np.median(readings))) if known.any() else 1.0

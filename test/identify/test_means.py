@@ -31,6 +31,28 @@ def test_a_curved_signal_in_the_middles_becomes_the_mean_of_its_readings(each):
     assert left < 1e-12 if each == 1 else left < 0.05 * plain
 
 
+@pytest.mark.parametrize(('scatter', 'off'), [(0.0, 3e-4), (0.1, 4e-4), (0.24, 1e-3), (0.4, 4e-3)])
+@pytest.mark.parametrize('begin', [0.0, 0.5])
+def test_stamps_that_scatter_leave_a_reading_in_every_bin(scatter, off, begin):
+    """One a bin, in its middle or on its edge: strayed to the next bin, it would leave none."""
+
+    def signal(time):
+        return np.sin(2.0 * np.pi * time)
+
+    rng = np.random.default_rng(3)
+    time = PERIOD * (np.arange(BINS + 1) + begin + rng.uniform(-scatter, scatter, BINS + 1))
+    channel = Channel(SENSOR.channel, time, signal(time))
+    means, _, _ = binned(channel, SENSOR, 0.0, PERIOD, BINS)
+    inner = slice(3, -3)
+    if scatter < 0.25:
+        assert np.isfinite(means[inner]).all()
+    middles = PERIOD * (np.arange(BINS) + 0.5)
+    even = 0.5 * (
+        signal(middles - PERIOD * (0.5 - begin)) + signal(middles + PERIOD * (0.5 - begin))
+    )
+    assert np.nanstd((means - even)[inner]) < off
+
+
 def test_a_jump_stays_a_jump():
     jump = np.where(np.arange(BINS) < 90, 0.0, 1.0)[None]
     assert np.array_equal(averaged(jump, np.array([10.0])), jump)
