@@ -61,8 +61,8 @@ def import_runs(
 
 def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     """Return a run as a recording."""
-    warnings: list[str] = []
     place = f'{path}: run {table.key}'
+    warnings = [f'{place}: {warning}' for warning in table.warnings]
     epoch = round(mapping.epoch.timestamp() * 1e9)
     time = _time(path, table, mapping.time)
     every = np.arange(time.size)

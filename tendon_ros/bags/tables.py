@@ -27,13 +27,15 @@ class Table:
     The columns of one run.
 
     ``columns`` by name, in the order of the file, each shape (n,); ``header`` is the text that the
-    file keeps beside the run; ``faults`` says of a column why it cannot be used.
+    file keeps beside the run; ``faults`` says of a column why it cannot be used, ``warnings`` what
+    was left out.
     """
 
     key: str
     columns: Mapping[str, FloatArray]
     header: str = ''
     faults: Mapping[str, str] = field(default_factory=dict)
+    warnings: Sequence[str] = ()
     names: Sequence[str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -86,8 +88,9 @@ def read_tables(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[
 def _whole(path: Path, kind: str) -> dict[str, Callable[[], Table]]:
     """Return the one run of a file of text, which is read at once."""
     with _explained(path, kind):
-        columns, faults = read_csv(path) if kind == 'csv' else read_json(path)
-    return {path.stem: lambda: Table(path.stem, columns, faults=faults)}
+        text = read_csv(path) if kind == 'csv' else read_json(path)
+    table = Table(path.stem, text.columns, faults=text.faults, warnings=text.warnings)
+    return {path.stem: lambda: table}
 
 
 def _parts(path: Path, kind: str, runs: Runs | None) -> dict[str, Callable[[], Table]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import csv
+from dataclasses import dataclass
 import json
 from pathlib import Path
 from typing import Any
@@ -18,15 +19,30 @@ DELIMITERS = ';\t,'
 LOOKED_AT = 20
 
 
-def read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+@dataclass(frozen=True)
+class TextColumns:
     """
-    Return the columns of a CSV file, and what is wrong with those that hold more than numbers.
+    The columns of a file of text.
+
+    ``columns`` by name, each shape (n,); ``faults`` says of those that hold more than numbers what
+    is wrong with them; ``warnings`` what was left out.
+    """
+
+    columns: dict[str, FloatArray]
+    faults: dict[str, str]
+    warnings: tuple[str, ...] = ()
+
+
+def read_csv(path: Path) -> TextColumns:
+    """
+    Return the columns of a CSV file.
 
     They are named by the first line where a cell of it is anything but empty or a number. Between
-    semicolons or tabs, a comma is taken for the decimal sign.
+    semicolons or tabs, a comma is taken for the decimal sign. The last row of a logger that was
+    stopped may be cut off, and is left out then.
 
     :param path: the file.
-    :return: columns by name, each shape (n,); what is wrong with some of them, by name.
+    :return: the columns.
     :raises ValueError: where it holds no table; the libraries raise others.
     """
     with path.open(newline='', encoding='utf-8-sig') as stream:
@@ -34,7 +50,7 @@ def read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
     if not lines:
         raise ValueError('it is empty')
     delimiter = _delimiter(lines[:LOOKED_AT])
-    rows = list(csv.reader(lines, delimiter=delimiter))
+    rows = list(csv.reader(lines, delimiter=delimiter, skipinitialspace=True))
     comma = '' if delimiter == ',' else ','
     try:
         [_number(cell, comma) for cell in rows[0] if cell.strip()]
@@ -43,6 +59,13 @@ def read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
         names, first = [cell.strip() for cell in rows[0]], 1
     if len(set(names)) < len(names):
         raise ValueError('two columns have the same name')
+    warnings: tuple[str, ...] = ()
+    if len(rows) > first + 1 and len(rows[-1]) < len(names) and not lines[-1].endswith('\n'):
+        warnings = (
+            f'the last row, {len(rows)}, is cut off after {len(rows[-1])} of {len(names)} cells; '
+            'left out',
+        )
+        del rows[-1]
     table = np.full((len(rows) - first, len(names)), np.nan)
     faults: dict[str, str] = {}
     for i, row in enumerate(rows[first:]):
@@ -55,28 +78,29 @@ def read_csv(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
                 except ValueError:
                     fault = f'row {i + first + 1}, column {names[j]}: {cell!r} is not a number'
                     faults.setdefault(names[j], fault)
-    return {name: table[:, j] for j, name in enumerate(names)}, faults
+    return TextColumns({name: table[:, j] for j, name in enumerate(names)}, faults, warnings)
 
 
 def _delimiter(lines: Sequence[str]) -> str:
     """Return what stands between the cells: what makes rows of one length, longer than one."""
     present = [d for d in DELIMITERS if d in lines[0]]
     for delimiter in present:
-        lengths = {len(row) for row in csv.reader(lines, delimiter=delimiter)}
+        rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
+        lengths = {len(row) for row in rows}
         if len(lengths) == 1 and lengths != {1}:
             return delimiter
     return present[0] if present else ','
 
 
-def read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
+def read_json(path: Path) -> TextColumns:
     """
-    Return the columns of a JSON file, and what is wrong with those that hold more than numbers.
+    Return the columns of a JSON file.
 
     The samples are the longest list of objects in the file, or the longest lists of numbers in it.
     A sample that lacks a column, or has null in it, was not taken there.
 
     :param path: the file.
-    :return: columns by name, each shape (n,); what is wrong with some of them, by name.
+    :return: the columns.
     :raises ValueError: where it holds no samples; the libraries raise others.
     """
     document = json.loads(path.read_text(encoding='utf-8-sig'))
@@ -109,7 +133,7 @@ def read_json(path: Path) -> tuple[dict[str, FloatArray], dict[str, str]]:
                     faults.setdefault(name, f'sample {i}, {name}: too large a number')
             elif cell is not None:
                 faults.setdefault(name, f'sample {i}, {name}: {str(cell)[:40]!r} is not a number')
-    return columns, faults
+    return TextColumns(columns, faults)
 
 
 def _number(cell: str, comma: str) -> float:

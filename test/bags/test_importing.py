@@ -370,6 +370,16 @@ def test_a_bad_csv_is_one_line(tmp_path, text, words):
         imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
 
 
+def test_the_last_row_of_a_logger_that_was_stopped_is_left_out_and_told(tmp_path):
+    rows = '\n'.join(f'{t}, {c}' for t, c in zip(TIME * 1e3, COUNTS, strict=True))
+    # names and cells after a blank, as some write them
+    (tmp_path / 'x.csv').write_text(f'"t", "motor"\n{rows}\n40.')
+    (run,) = imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
+    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    [told] = run.warnings
+    assert told.endswith('the last row, 42, is cut off after 1 of 2 cells; left out')
+
+
 def test_python_objects_beside_the_signals_are_left_aside(tmp_path):
     objects = np.array([{'gain': 3.0}, None], dtype=object)
     np.savez(tmp_path / 'x.npz', t=TIME * 1e3, motor=COUNTS, settings=objects)
