@@ -84,7 +84,7 @@ class Spread:
 
 
 def parameter_intervals(
-    problem: Problem, fit: Fit, known: NDArray[np.bool_] | None = None
+    problem: Problem, fit: Fit, known: NDArray[np.bool_] | None = None, *, laws: bool = True
 ) -> list[dict[str, tuple[float, float]]]:
     """
     Return the 95 % intervals of every cause's parameters.
@@ -92,6 +92,7 @@ def parameter_intervals(
     :param problem: the data.
     :param fit: the fit.
     :param known: unknowns that are taken for known, shape (unknowns,); none where None.
+    :param laws: whether to allow for what laws get wrong, or for what the data leave open alone.
     :return: for each cause, low and high by parameter, in its unit.
     """
     spread = Spread(problem, fit, known)
@@ -104,7 +105,7 @@ def parameter_intervals(
         row: dict[str, tuple[float, float]] = {}
         for n, p in enumerate(cause.parameters):
             value, axis = centre[p.name], coordinates.axes[n]
-            by_form = _by_form(p, value, form)
+            by_form = _by_form(p, value, form) if laws else 0.0
             direction = np.zeros((1, fit.slope.shape[1]))
             if coordinates.paired(n):
                 for j, step in enumerate(SMALL * np.eye(len(z))):
@@ -136,7 +137,8 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     units = [t.guessed and t.quantity == 'torque_gain' for t in problem.tolerances]
     own = fit.slope.shape[1] - len(units)
     rows = parameter_intervals(problem, fit, np.array([False] * own + units))
-    whole = parameter_intervals(problem, fit)
+    # an angle that a law gets wrong is no less there
+    whole = parameter_intervals(problem, fit, laws=False)
     for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
         if cause.given:
             known = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}

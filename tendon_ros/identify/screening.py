@@ -242,7 +242,8 @@ class Screen:
             now = self.problem.left(self.fit.model.joined(proposal.candidate, values))
             if not np.isfinite(now).all():
                 return None
-            found.append((now - before) / size)
+            # a size of nothing changes nothing
+            found.append((now - before) / (size or 1.0))
             before = now
         return np.array(found).T
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tendon_ros.diagnose.bent import degenerate
-from tendon_ros.diagnose.intervals import unsized
+from tendon_ros.diagnose.intervals import parameter_intervals, unsized
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import everyone
@@ -74,6 +74,18 @@ def test_a_weight_that_may_be_within_its_tolerance_has_no_size(
         values = {'torque': torque, 'phase': phase}
         fit = problem.fitted(problem.empty.joined(weight, values), rounds=6)
         assert (0 not in unsized(problem, fit)) is told
+
+
+def test_a_weight_at_another_angle_is_there_whatever_its_law_gets_wrong(arm, weight, measured_on):
+    """Of an angle laws get some degrees wrong, more than it may be off by the file."""
+    values = {'torque': 0.4, 'phase': 0.1}
+    problem = prepared([measured_on(weighing(arm, **values), settings=SETTINGS)], arm).problem
+    fit = problem.fitted(problem.empty.joined(weight, values), rounds=6)
+    [row] = parameter_intervals(problem, fit)
+    [alone] = parameter_intervals(problem, fit, laws=False)
+    farthest = next(t.axis.high for t in problem.tolerances if t.quantity == 'gravity.phase')
+    assert row['phase'][0] < farthest < alone['phase'][0] < 0.1
+    assert not unsized(problem, fit)
 
 
 def test_of_equals_what_contradicts_a_measurement_comes_last(arm, weight):

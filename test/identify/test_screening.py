@@ -45,6 +45,15 @@ def test_what_was_put_in_comes_first(bench, measured_on, effect, alike):
         assert own.values[name] == pytest.approx(value, rel=0.3)
 
 
+def test_a_size_of_nothing_changes_nothing(bench, sound_run):
+    """A preload that would leave a cable slack may be the one that the fit has come to."""
+    problem = prepared([sound_run], bench).problem
+    screen = Screen(problem, problem.fitted(problem.empty))
+    loose = screen.proposals(Candidate('pretension', 'cable_12'))[0]
+    changes = screen._changes(replace(loose, z=loose.base), [0.0] * len(loose.sizes))
+    assert changes is not None and not changes.any()
+
+
 def test_sound_data_propose_nothing_worth_much(bench, sound_run):
     ranked = screened(bench, sound_run)
     samples = 5000
