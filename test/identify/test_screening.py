@@ -51,7 +51,8 @@ def test_a_size_of_nothing_changes_nothing(bench, sound_run):
     screen = Screen(problem, problem.fitted(problem.empty))
     loose = screen.proposals(Candidate('pretension', 'cable_12'))[0]
     changes = screen._changes(replace(loose, z=loose.base), [0.0] * len(loose.sizes))
-    assert changes is not None and not changes.any()
+    assert changes is not None
+    assert not changes.any()
 
 
 def test_sound_data_propose_nothing_worth_much(bench, sound_run):
