@@ -5,6 +5,9 @@ A pose is found once, for the motion as it was read and the file as it is. An en
 past the truth moves the motors of the model elsewhere, and all that hangs on them has to go along;
 a weight stretches its cable before anything moves. Left behind, light pulleys would ring for a
 second, and friction would hold them where they never were.
+
+What lies within a play is held by nothing but friction: it begins where its own sensor reads it,
+and would swing for seconds about where a weight comes to rest in the end.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.segment import Segment
 from tendon_ros.model.instrument import Instrument
+from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.statics import Statics
 
@@ -58,6 +62,44 @@ class Beginning:
             return pose
         along = self._following @ shift
         return {name: pose[name] + more for name, more in zip(pose, along.tolist(), strict=True)}
+
+    def loose(self, numbers: Numbers, motion: Signals) -> dict[str, float]:
+        """
+        Return where pulleys begin that lie within the play of all that they hang on.
+
+        :param numbers: after the effects in force.
+        :param motion: what truly drove.
+        :return: angles [rad] by pulley, of those whose own sensor was read.
+        """
+        if not numbers['play'].any():
+            return {}
+        one = self._instrument
+        driven = self._segment.prescribed
+        given = dict(zip(driven, motion.value[: len(driven), 0].tolist(), strict=True))
+        begun = {**self.pose(motion), **given}
+        found = {}
+        for name, angle in self._read(numbers).items():
+            at = one.index(name)
+            links = numbers.loops_on(at)
+            angles = np.array([begun.get(p.name, 0.0) for p in one.pulleys])
+            angles[at] = angle
+            off = np.abs(numbers['radius'][links] @ angles)
+            if links and np.all(off < 0.5 * numbers['play'][links]):
+                found[name] = angle
+        return found
+
+    def _read(self, numbers: Numbers) -> dict[str, float]:
+        """Return what the first readings of inner pulleys say of their angles [rad]."""
+        sensors = list(self._instrument.sensors)
+        found = {}
+        for m in self._segment.measured:
+            known = m.value[np.isfinite(m.value)]
+            inner = m.sensor.kind == 'angle' and m.sensor.of in self._segment.pose
+            if inner and m.sensor.zeroed and known.size:
+                q = [s.channel for s in sensors].index(m.sensor.channel)
+                read = float(known[0]) - float(numbers['sensor_offset'][q])
+                found[m.sensor.of] = read / float(numbers['sensor_gain'][q])
+        return found
 
     @cached_property
     def _following(self) -> FloatArray:

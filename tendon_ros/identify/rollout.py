@@ -207,6 +207,7 @@ class Rollouts:
             len(segment.time) - 1,
             pose=self._beginning[n].pose(motion),
             resting=self._beginning[n].resting,
+            loose=self._beginning[n].loose(arrays.numbers, motion),
         )
         return rows, arrays.numbers
 

@@ -213,6 +213,17 @@ class Runner:
             self._state[i] = float(angle[own])
             self._state[n + i] = float(velocity[own])
 
+    def hang(self, pose: Mapping[str, float]) -> None:
+        """
+        Put some pulleys somewhere at rest, all else unchanged.
+
+        :param pose: angles [rad] by pulley.
+        """
+        at = self.structure
+        for name, angle in pose.items():
+            own = at.order.index(self.instrument.index(name))
+            self._state[own], self._state[at['N'] + own] = angle, 0.0
+
     def bend(self, place: NDArray[np.intp], part: FloatArray) -> None:
         """
         Set memories one by one, those of pre-sliding friction for instance.

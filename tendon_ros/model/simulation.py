@@ -266,6 +266,7 @@ def follow(
     engine: str = 'auto',
     pose: Mapping[str, float] | None = None,
     resting: float = 0.0,
+    loose: Mapping[str, float] | None = None,
 ) -> Rows:
     """
     Drive a model whose arrays are there already, from :func:`along`, as :func:`predict` does.
@@ -279,10 +280,12 @@ def follow(
     :param pose: as for :func:`predict`.
     :param resting: how long the signals had been where they begin [s]: what the effects in force
         make of the pose has happened by then.
+    :param loose: angles [rad] of pulleys that nothing holds, wherever they would come to rest.
     :return: rows.
     """
     runner = Runner(instrument, arrays, engine)
     runner.rest(pose or {})
     before = runner.settle(resting, Signals.held(motion.value[:, 0])) if resting > 0.0 else 0
+    runner.hang(loose or {})
     rows = runner.advance(np.zeros(0), ticks, every=every, smoothly=True, signals=motion)
     return replace(rows, steps=before + rows.steps)

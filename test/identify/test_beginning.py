@@ -63,6 +63,46 @@ def test_what_plays_or_hangs_slack_goes_along_too(bench, sound_problem):
         assert moved['3'] - segment.pose['3'] == pytest.approx(0.0, abs=1e-5)
 
 
+GEARED = """
+pulleys:
+  rotor: {inertia: 0.015 kg*m^2, damping: 0.08 N*m*s/rad}
+  arm: {inertia: 0.02 kg*m^2, damping: 0.005 N*m*s/rad}
+couplings:
+  gear: {route: {rotor: 1, arm: -1}, stiffness: 60 N*m/rad, damping: 0.05 N*m*s/rad}
+motors:
+  rotor:
+    controller: {kp: 30 N*m/rad, kd: 0.7 N*m*s/rad, limit: 5 N*m}
+    encoder: {counts: 200000}
+    torque_sensor: {noise: 15 mN*m}
+joint_sensors:
+  arm: {counts: 200000}
+control: {rate: 1 kHz}
+"""
+
+
+@pytest.mark.parametrize(('play', 'lies'), [(0.06, True), (0.01, False), (0.0, False)])
+def test_what_lies_within_a_play_begins_where_it_is_read(tmp_path, measured_on, play, lies):
+    """Wherever a weight would come to rest; an arm that hangs free swings there for seconds."""
+    path = tmp_path / 'geared.yaml'
+    path.write_text(GEARED, encoding='utf-8')
+    rig = load_instrument(path)
+    rollouts = prepared([measured_on(rig)], rig).problem.rollouts
+    [segment] = rollouts.segments
+    read = tuple(
+        replace(m, value=m.value + 0.02) if m.sensor.of == 'arm' else m for m in segment.measured
+    )
+    weight = EffectUse('gravity', 'pulley_arm', {'torque': 1.2, 'phase': -0.01})
+    loose = EffectUse('backlash', 'coupling_gear', {'angle': play})
+    moved = rollouts.like([replace(segment, measured=read)])
+    [rows] = moved.states([[weight, loose]])
+    [first] = [m.value[0] for m in read if m.sensor.of == 'arm']
+    assert (abs(rows.angle[0, rig.index('arm')] - first) < 1e-3) == lies
+    # an encoder that reads past the truth is seen through
+    past = EffectUse('encoder_offset', 'encoder_arm', {'angle': 0.005})
+    [rows] = moved.states([[weight, loose, past]])
+    assert (abs(rows.angle[0, rig.index('arm')] - first + 0.005) < 1e-3) == lies
+
+
 def test_a_model_that_torques_drive_comes_to_no_rest(measured_on):
     body = load_instrument('single_body')
     [along] = prepared([measured_on(body)], body).problem.rollouts.segments
