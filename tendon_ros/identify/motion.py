@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.identify.smoothing import smoothed
@@ -12,6 +13,9 @@ from tendon_ros.model.instrument import Sensor
 FloatArray = NDArray[np.float64]
 
 OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as short
+#: part of the time between readings that stamps may be off an even beat; and how often what is
+#: off a smooth motion is looked at until nothing of it bends with the stamps
+EVEN, CURVED = 0.01, 3
 
 
 def thinned(channel: Channel) -> Channel:
@@ -46,7 +50,14 @@ def motion_of(
     error = reading_error(channel, sensor)
     known = sensor.resolution > 0.0 or sensor.noise > 0.0
     count = sensor.resolution if known else error * np.sqrt(12.0)
-    return smoothed(channel.at(grid), gap < 1.5 * sampling, error, count)
+    near = gap < 1.5 * sampling
+    found = smoothed(channel.at(grid), near, error, count)
+    # straight between readings whose stamps scatter, the motion would bend at random: only what
+    # they are off a smooth motion may go straight
+    for _ in range(CURVED if np.any(gap[near] > EVEN * sampling) else 0):
+        off = channel.value - CubicSpline(grid, found)(channel.time)
+        found = smoothed(found + np.interp(grid, channel.time, off), near, error, count)
+    return found
 
 
 def motion_in_bins(
