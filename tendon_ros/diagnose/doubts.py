@@ -169,7 +169,8 @@ def brief_words(ready: Prepared, final: Model) -> list[str]:
         # every moment counts in two of them
         every = 0.5 * sum(one.misfit for one in seconds)
         usual = 0.5 * noise[channel] ** 2 * sum(one.samples for one in seconds)
-        if every > OFF**2 * usual and worst.misfit > AT_ONCE * every:
+        much = math.isfinite(every) and every > OFF**2 * usual
+        if much and worst.misfit > AT_ONCE * every:
             found.append(
                 f'{worst.misfit / every:.0%} of what stays of {channel} lies between '
                 f'{worst.begin:.1f} and {worst.begin + 1.0:.1f} s of {worst.recording}: something '
@@ -186,7 +187,7 @@ class _Second:
     recording: str
     begin: float
     misfit: float
-    samples: int
+    samples: float
 
 
 def _seconds(problem: Problem, model: Model) -> dict[str, list[_Second]]:
@@ -197,13 +198,15 @@ def _seconds(problem: Problem, model: Model) -> dict[str, list[_Second]]:
         problem.rollouts.segments, predicted, problem.masks, strict=True
     ):
         half = np.floor(2.0 * (segment.start + segment.time)).astype(np.int64)
+        begin = 0.5 * (np.arange(half[0], half[-1] + 2) - 1)
         for m, row, mask in zip(segment.measured, rows, masks, strict=True):
-            for begin in range(int(half[0]) - 1, int(half[-1]) + 1):
-                off = (m.value - row)[mask & (half >= begin) & (half <= begin + 1)]
-                if off.size:
-                    found.setdefault(m.sensor.channel, []).append(
-                        _Second(segment.name, 0.5 * begin, float(off @ off), off.size)
-                    )
+            off = np.where(mask, m.value - row, 0.0)
+            halves = [np.bincount(half - half[0], weights) for weights in (off**2, mask)]
+            misfit, samples = (np.convolve(part, (1.0, 1.0)) for part in halves)
+            found.setdefault(m.sensor.channel, []).extend(
+                _Second(segment.name, *one)
+                for one in zip(begin.tolist(), misfit.tolist(), samples.tolist(), strict=True)
+            )
     return found
 
 

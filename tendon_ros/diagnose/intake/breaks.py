@@ -81,16 +81,16 @@ def _leaps(channel: Channel) -> Iterator[Break]:
     steps = np.diff(channel.value)
     leap = np.abs(steps)
     usual = channel.sampling
-    first, last = np.append(0.0, steps[:-1]), np.append(steps[1:], 0.0)
-    off = np.abs(steps - 0.5 * (first + last))
-    beside = np.maximum(np.abs(first), np.abs(last))
+    previous, next_one = np.append(0.0, steps[:-1]), np.append(steps[1:], 0.0)
+    off = np.abs(steps - 0.5 * (previous + next_one))
+    beside = np.maximum(np.abs(previous), np.abs(next_one))
     for n in np.flatnonzero(off > np.maximum(STILL, FASTER * beside)).tolist():
         if time[n + 1] - time[n] > GAP * usual or not AROUND <= n < leap.size - AROUND:
             continue
-        before, after_it = steps[n - AROUND : n], steps[n + 1 : n + 1 + AROUND]
-        left, right = np.abs(before).max(), np.abs(after_it).max()
+        earlier, later = steps[n - AROUND : n], steps[n + 1 : n + 1 + AROUND]
+        left, right = np.abs(earlier).max(), np.abs(later).max()
         pace = max(left, right)
-        uneven = max(np.abs(np.diff(before)).max(), np.abs(np.diff(after_it)).max())
+        uneven = max(np.abs(np.diff(earlier)).max(), np.abs(np.diff(later)).max())
         # in motion on both sides: between rests, a small servo may well go like that
         moves = min(left, right) > 0.0
         if moves and off[n] > max(FASTER * pace, LEAP * min(pace, uneven)):
