@@ -68,7 +68,7 @@ def may_be_signless(problem: Problem, candidate: Candidate) -> bool:
     :return: whether no reading of the sensor is negative by more than noise, and by the file some
         would be: a load cell on which the tip can only press has no sign to lose.
     """
-    if not candidate.switches or _reads_below_zero(problem, candidate.place) is not False:
+    if not candidate.switches or _reads_below_zero(problem, candidate.place):
         return False
     without = lost(problem.empty, candidate)
     return not np.allclose(problem.left(without), problem.left(problem.empty))
@@ -91,8 +91,8 @@ def signed(problem: Problem, candidates: Sequence[Candidate]) -> list[Candidate]
     ]
 
 
-def _reads_below_zero(problem: Problem, sensor: str) -> bool | None:
-    """Return whether a sensor reads below zero by more than noise; None where it read nothing."""
+def _reads_below_zero(problem: Problem, sensor: str) -> bool:
+    """Return whether a sensor reads below zero by more than noise."""
     values = [
         measured.value[np.isfinite(measured.value)]
         for segment in problem.rollouts.segments
@@ -100,4 +100,4 @@ def _reads_below_zero(problem: Problem, sensor: str) -> bool | None:
         if measured.sensor.name == sensor
     ]
     read = np.concatenate(values) if values else np.zeros(0)
-    return float(read.min()) <= -BELOW * float(np.ptp(read)) if read.size else None
+    return bool(read.size) and float(read.min()) <= -BELOW * float(np.ptp(read))

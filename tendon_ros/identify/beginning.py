@@ -74,32 +74,34 @@ class Beginning:
         if not numbers['play'].any():
             return {}
         one = self._instrument
-        driven = self._segment.prescribed
-        given = dict(zip(driven, motion.value[: len(driven), 0].tolist(), strict=True))
-        begun = {**self.pose(motion), **given}
+        driven = motion.value[: len(self._segment.prescribed), 0].tolist()
+        begun = {**self.pose(motion), **dict(zip(self._segment.prescribed, driven, strict=True))}
         found = {}
         for name, angle in self._read(numbers).items():
-            at = one.index(name)
-            links = numbers.loops_on(at)
-            angles = np.array([begun.get(p.name, 0.0) for p in one.pulleys])
-            angles[at] = angle
-            off = np.abs(numbers['radius'][links] @ angles)
-            if links and np.all(off < 0.5 * numbers['play'][links]):
+            links = numbers.loops_on(one.index(name))
+            angles = np.array([{**begun, name: angle}.get(p.name, 0.0) for p in one.pulleys])
+            stretched = np.abs(numbers['radius'][links] @ angles)
+            if links and np.all(stretched < 0.5 * numbers['play'][links]):
                 found[name] = angle
         return found
 
     def _read(self, numbers: Numbers) -> dict[str, float]:
         """Return what the first readings of inner pulleys say of their angles [rad]."""
-        sensors = list(self._instrument.sensors)
-        found = {}
-        for m in self._segment.measured:
-            known = m.value[np.isfinite(m.value)]
-            inner = m.sensor.kind == 'angle' and m.sensor.of in self._segment.pose
-            if inner and m.sensor.zeroed and known.size:
-                q = [s.channel for s in sensors].index(m.sensor.channel)
-                read = float(known[0]) - float(numbers['sensor_offset'][q])
-                found[m.sensor.of] = read / float(numbers['sensor_gain'][q])
-        return found
+        first = {m.sensor.channel: m.value[np.isfinite(m.value)] for m in self._segment.measured}
+        return {
+            s.of: float((first[s.channel][0] - offset) / gain)
+            for s, offset, gain in zip(
+                self._instrument.sensors,
+                numbers['sensor_offset'],
+                numbers['sensor_gain'],
+                strict=True,
+            )
+            if s.kind == 'angle'
+            and s.of in self._segment.pose
+            and s.zeroed
+            and s.channel in first
+            and first[s.channel].size
+        }
 
     @cached_property
     def _following(self) -> FloatArray:
