@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import encoder_channels
 from tendon_ros.identify.hearing import heard, neighbours
-from tendon_ros.identify.motion import reading_error
+from tendon_ros.identify.motion import reading_error, ReadingError
 from tendon_ros.identify.repetition import unrepeated
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Measured, Segment
@@ -202,13 +202,14 @@ def _level(change: FloatArray, period: float, seconds: float) -> FloatArray:
 def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -> Signals:
     """Return the motion as it would look had the encoders' counts lain half a count elsewhere."""
 
-    def again(motion: FloatArray, error: float, sampling: float) -> FloatArray:
+    def again(motion: FloatArray, reading: ReadingError, sampling: float) -> FloatArray:
         bins = segment.period * np.arange(len(motion))
         # the middle of a bin lies between two readings, which share their noise
         read = np.arange(-0.5 * sampling, len(motion) * segment.period, sampling)
         between: FloatArray = CubicSpline(bins, motion)(read)
+        other = recounted(between, reading.of(between, sampling), reading.count)
         # what lies between bins is not known to a count of a fine encoder: only changes count
-        found: FloatArray = motion + np.interp(bins, read, recounted(between, error) - between)
+        found: FloatArray = motion + np.interp(bins, read, other - between)
         return found
 
     return _moved(instrument, segment, recording, again)
@@ -221,9 +222,9 @@ def _smoother(instrument: Instrument, segment: Segment, recording: Recording) ->
     A motion that starts or stops within a count has an acceleration that nobody has seen.
     """
 
-    def again(motion: FloatArray, error: float, _sampling: float) -> FloatArray:
+    def again(motion: FloatArray, reading: ReadingError, _sampling: float) -> FloatArray:
         known = np.ones(len(motion), dtype=np.bool_)
-        return smoothed(motion, known, error, error * np.sqrt(12.0))
+        return smoothed(motion, known, reading.still, reading.still * np.sqrt(12.0))
 
     return _moved(instrument, segment, recording, again)
 
@@ -232,14 +233,13 @@ def _moved(
     instrument: Instrument,
     segment: Segment,
     recording: Recording,
-    again: Callable[[FloatArray, float, float], FloatArray],
+    again: Callable[[FloatArray, ReadingError, float], FloatArray],
 ) -> Signals:
-    """Return another motion, by the old one, the encoder's error and its sampling [s]."""
+    """Return another motion, by the old one, the encoder's errors and its sampling [s]."""
     sensors = {s.channel: s for s in instrument.sensors}
     rows = list(segment.motion.value)
     for row, name in enumerate(encoder_channels(instrument)):
-        error = reading_error(recording[name], sensors[name])
-        if error > 0.0:
-            sampling = recording[name].sampling
-            rows[row] = again(rows[row], error, sampling)
+        reading = reading_error(recording[name], sensors[name])
+        if reading.still > 0.0:
+            rows[row] = again(rows[row], reading, recording[name].sampling)
     return Signals.smooth(segment.motion.start, segment.motion.step, np.array(rows))

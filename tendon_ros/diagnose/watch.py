@@ -281,7 +281,7 @@ class Watch:
         moved = np.zeros(len(segment.time), dtype=np.bool_)
         # measured loads, if any, follow the motions
         for row, name in zip(segment.motion.value, self._motors, strict=False):
-            error = reading_error(recording[name], self._sensors[name])
+            error = reading_error(recording[name], self._sensors[name]).still
             span = np.maximum.accumulate(row) - np.minimum.accumulate(row)
             moved |= span > MOVED * error
         counted: BoolArray = moved & (segment.time > self.settings.warm_up)

@@ -81,13 +81,15 @@ class Driven:
     """
     What a drive did, as finely as its encoder tells.
 
-    ``angle``: by time from the first reading [rad]; ``error`` [rad] of a reading; ``inertia``
-    [kg m^2] by ``torque`` [N m], root mean square of what the motor reported.
+    ``angle``: by time from the first reading [rad]; ``error`` [rad] of each reading, shape (n,),
+    that counts in steps of ``count`` [rad]; ``inertia`` [kg m^2] by ``torque`` [N m], root mean
+    square of what the motor reported.
     """
 
     time: FloatArray
     angle: CubicSpline
-    error: float
+    error: FloatArray
+    count: float
     inertia: float
     torque: float
 
@@ -113,10 +115,12 @@ class Driven:
         samples = round(seconds / channel.sampling) + 1
         time = channel.sampling * np.arange(samples, dtype=np.float64)
         fine = motion_of(channel, drive.sensor, float(channel.time[0]), channel.sampling, samples)
+        reading = reading_error(channel, drive.sensor)
         return cls(
             time,
             CubicSpline(time, fine),
-            reading_error(channel, drive.sensor),
+            reading.of(fine, channel.sampling),
+            reading.count,
             float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)]),
             float(np.sqrt(np.mean(recording[torques[0]].value ** 2))),
         )
@@ -133,7 +137,7 @@ class Driven:
         middles, _ = self._bins(period)
         coarse = CubicSpline(middles, self.angle(middles))
         inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
-        if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= self.error:
+        if np.mean((coarse(inner) - self.angle(inner)) ** 2) <= np.mean(self.error**2):
             return 0.0
         return self.unseen(period)
 
@@ -190,5 +194,6 @@ class Driven:
     def _counted(self) -> CubicSpline:
         """What counts make of the angle."""
         angle: FloatArray = self.angle(self.time)
-        made_up = recounted(angle, self.error) - angle if self.error > 0.0 else 0.0 * angle
+        known = np.min(self.error) <= 0.0
+        made_up = 0.0 * angle if known else recounted(angle, self.error, self.count) - angle
         return CubicSpline(self.time, made_up)

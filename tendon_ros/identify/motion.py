@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import uniform_filter1d
 
 from tendon_ros.base.recording import Channel
+from tendon_ros.identify.scatter import scatter
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.model.instrument import Sensor
 
@@ -16,6 +20,10 @@ OFTEN = 1e-3  # [s] between readings that are smoothed: bins are hardly ever as 
 #: part of the time between readings that stamps may be off an even beat; and how often what is
 #: off a smooth motion is looked at until nothing of it bends with the stamps
 EVEN, CURVED = 0.01, 3
+#: times what the file says that readings scatter where they are noisier than it says: counts
+#: alone, at a speed that is hardly any, make up to 1.2 of it
+NOISIER = 1.5
+SPEED = 9  # readings that tell a speed
 
 
 def thinned(channel: Channel) -> Channel:
@@ -47,11 +55,11 @@ def motion_of(
     gap = np.minimum(
         np.abs(channel.time[nearest] - grid), np.abs(channel.time[nearest - 1] - grid)
     )
-    error = reading_error(channel, sensor)
-    known = sensor.resolution > 0.0 or sensor.noise > 0.0
-    count = sensor.resolution if known else error * np.sqrt(12.0)
+    reading = reading_error(channel, sensor)
+    read = channel.at(grid)
+    error, count = reading.of(read, sampling), reading.count
     near = gap < 1.5 * sampling
-    found = smoothed(channel.at(grid), near, error, count)
+    found = smoothed(read, near, error, count)
     # straight between readings whose stamps scatter, the motion would bend at random: only what
     # they are off a smooth motion may go straight
     for _ in range(CURVED if np.any(gap[near] > EVEN * sampling) else 0):
@@ -82,19 +90,53 @@ def motion_in_bins(
     return found
 
 
-def reading_error(channel: Channel, sensor: Sensor) -> float:
+@dataclass(frozen=True)
+class ReadingError:
     """
-    Return the standard deviation of one reading.
+    How far a reading may be off.
+
+    ``still``: one deviation of what does not move; ``late``: of the time of a reading [s];
+    ``count``: the step between readings, 0 where there is none.
+    """
+
+    still: float
+    late: float
+    count: float
+
+    def at(self, speed: FloatArray) -> FloatArray:
+        """Return one deviation of readings, by speed in their unit a second, shape (n,)."""
+        return np.hypot(self.still, self.late * speed)
+
+    def of(self, motion: FloatArray, sampling: float) -> FloatArray:
+        """
+        Return one deviation of each reading of a motion.
+
+        :param motion: evenly read, smooth or not, shape (n,).
+        :param sampling: time between readings [s].
+        :return: shape (n,).
+        """
+        if self.late <= 0.0:
+            return np.full(len(motion), self.still)
+        # late readings do not make a speed, or the motion would be as vague as it looks
+        return self.at(np.gradient(uniform_filter1d(motion, SPEED), sampling))
+
+
+def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:
+    """
+    Return how far a reading may be off.
 
     :param channel: what was read.
     :param sensor: its resolution and noise, where the instrument file gives them.
-    :return: in the unit of the channel; from the smallest step between readings where the file is
-        silent.
+    :return: in the unit of the channel; what readings scatter by in motion where that is more
+        than the file says, and from the smallest step between readings where the file is silent.
     """
-    if sensor.resolution > 0.0 or sensor.noise > 0.0:
-        return float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-    steps = np.abs(np.diff(channel.value))
-    steps = steps[steps > 0.0]
-    if not steps.size:
-        return 0.0
-    return float(np.quantile(steps, 0.02) / np.sqrt(12.0))
+    if not (sensor.resolution > 0.0 or sensor.noise > 0.0):
+        steps = np.abs(np.diff(channel.value))
+        steps = steps[steps > 0.0]
+        count = float(np.quantile(steps, 0.02)) if steps.size else 0.0
+        return ReadingError(count / np.sqrt(12.0), 0.0, count)
+    known = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
+    told = scatter(channel, max(sensor.resolution, sensor.noise))
+    if told is None or told.usual <= NOISIER * known:
+        return ReadingError(known, 0.0, sensor.resolution)
+    return ReadingError(max(known, told.still), told.late, sensor.resolution)

@@ -224,7 +224,7 @@ def segment_of(instrument: Instrument, recording: Recording, period: float) -> S
         start=start,
         pushed=tuple(d.pulley for d in driving if d.by_torque),
         still=tuple(
-            at_rest(row, reading_error(recording[d.sensor.channel], d.sensor), period)
+            at_rest(row, reading_error(recording[d.sensor.channel], d.sensor).still, period)
             for d, row in zip(driving, rows, strict=True)
             if not d.by_torque
         ),

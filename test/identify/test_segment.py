@@ -127,8 +127,10 @@ def test_the_error_of_a_reading_is_found_where_the_file_is_silent(body):
     time = np.arange(0.0, 4.0, 0.002)
     channel = Channel(ANGLE, time, count * np.round(np.sin(time) / count))
     silent = replace(sensor, resolution=0.0, noise=0.0)
-    assert reading_error(channel, silent) == pytest.approx(count / np.sqrt(12.0), rel=1e-3)
-    assert reading_error(channel, sensor) == pytest.approx(sensor.resolution / np.sqrt(12.0))
+    assert reading_error(channel, silent).still == pytest.approx(count / np.sqrt(12.0), rel=1e-3)
+    own = sensor.resolution
+    counted = Channel(ANGLE, time, own * np.round(np.sin(time) / own))
+    assert reading_error(counted, sensor).still == pytest.approx(own / np.sqrt(12.0))
 
 
 def test_a_measured_load_turns_into_a_torque_on_its_pulley(bench, sound_run):

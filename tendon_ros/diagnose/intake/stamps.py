@@ -55,7 +55,7 @@ def _evened(recording: Recording, instrument: Instrument) -> tuple[Recording, li
         if even is None:
             continue
         channels = [
-            (recording[s.channel], reading_error(recording[s.channel], s)) for s in sensors
+            (recording[s.channel], reading_error(recording[s.channel], s).still) for s in sensors
         ]
         follows, known = followed(time, even, channels)
         if known > KNOWN or follows > FOLLOWS:
