@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.ndimage import uniform_filter1d
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.identify.scatter import scatter
+from tendon_ros.identify.scatter import scatter, speed_of
 from tendon_ros.identify.smoothing import smoothed
 from tendon_ros.model.instrument import Sensor
 
@@ -23,7 +22,6 @@ EVEN, CURVED = 0.01, 3
 #: times what the file says that readings scatter where they are noisier than it says: counts
 #: alone, at a speed that is hardly any, make up to 1.2 of it
 NOISIER = 1.5
-SPEED = 9  # readings that tell a speed
 
 
 def thinned(channel: Channel) -> Channel:
@@ -117,8 +115,7 @@ class ReadingError:
         """
         if self.late <= 0.0:
             return np.full(len(motion), self.still)
-        # late readings do not make a speed, or the motion would be as vague as it looks
-        return self.at(np.gradient(uniform_filter1d(motion, SPEED), sampling))
+        return self.at(speed_of(motion, sampling * np.arange(len(motion), dtype=np.float64)))
 
 
 def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 from scipy.optimize import nnls
 
 from tendon_ros.base.recording import Channel
@@ -25,6 +26,7 @@ FloatArray = NDArray[np.float64]
 WHITE = 2.0
 #: counts that three steps are at least where something moves, and how many tell anything
 MOVES, ENOUGH = 6.0, 100
+SPEED = 5  # readings that tell a speed
 #: deviations beyond which a reading is a slip and tells of itself only, and how often parts that
 #: do and do not grow with speed are told apart until neither changes
 SLIP, SETTLES = 3.0, 5
@@ -63,6 +65,17 @@ def scatter(channel: Channel, count: float) -> Scatter | None:
     return Scatter(usual, still, late)
 
 
+def speed_of(value: FloatArray, time: FloatArray) -> FloatArray:
+    """
+    Return the speed of what was read, as far as single readings do not make it.
+
+    :param value: the readings, shape (n,).
+    :param time: of each [s], shape (n,).
+    :return: in the unit of the readings a second, shape (n,).
+    """
+    return np.gradient(uniform_filter1d(value, SPEED), uniform_filter1d(time, SPEED))
+
+
 def _off(channel: Channel, apart: int, count: float) -> tuple[FloatArray, FloatArray] | None:
     """
     Return what four readings so far apart are off a parabola, and their speed; None at rest.
@@ -75,12 +88,13 @@ def _off(channel: Channel, apart: int, count: float) -> tuple[FloatArray, FloatA
     moving = np.abs(value[3] - value[0]) > MOVES * count
     if np.count_nonzero(moving) < ENOUGH:
         return None
+    speed = np.abs(speed_of(channel.value, channel.time)[own[1]][moving])
     time, value = time[:, moving], value[:, moving]
     weight = np.array(
         [1.0 / np.prod(time[n] - np.delete(time, n, axis=0), axis=0) for n in range(4)]
     )
     off: FloatArray = np.sum(weight * value, axis=0) / np.sqrt(np.sum(weight**2, axis=0))
-    return np.abs(off), np.abs(value[3] - value[0]) / (time[3] - time[0])
+    return np.abs(off), speed
 
 
 def _deviation(off: FloatArray) -> float:

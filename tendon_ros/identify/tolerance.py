@@ -226,14 +226,19 @@ def _moving(effect: str, quantity: str) -> Parameter:
 
 
 def _factor(quantity: str, spread: float, parameter: Parameter) -> Axis | None:
-    """Return the axis of a factor about one; None where nothing may move."""
+    """
+    Return the axis of a factor about one; None where nothing may move.
+
+    A number that may be twice as large may be half as large: what is below zero, or next to it, is
+    no tolerance of an inertia.
+    """
     if spread <= 0.0:
         return None
     if math.isinf(spread):
         scale = 0.25 if parameter.search == 'guess' else 0.5
         return Axis(quantity, '1', 0.02, 50.0, 1.0, scale, log=True, spread=REACH)
-    low, high = max(0.02, 1.0 - REACH * spread), 1.0 + REACH * spread
-    return Axis(quantity, '1', low, high, 1.0, spread, spread=1.0)
+    high = math.exp(REACH * spread)
+    return Axis(quantity, '1', max(0.02, 1.0 / high), high, 1.0, spread, log=True, spread=1.0)
 
 
 def _addition(
