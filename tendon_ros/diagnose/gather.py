@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -35,7 +36,7 @@ def traces(ready: Prepared, final: Model) -> tuple[Trace, ...]:
     :return: the signals.
     """
     whole = ready.whole
-    before = whole.rollouts.predicted(whole.uses(whole.empty))
+    before = whole.rollouts.predicted(whole.uses(whole.written))
     after = whole.rollouts.predicted(whole.uses(final))
     found = []
     for n, segment in enumerate(whole.rollouts.segments):
@@ -102,9 +103,9 @@ def floors(problem: Problem) -> tuple[Floor, ...]:
     )
 
 
-def alternatives(problem: Problem, found: Found, held: Belief) -> list[Fit]:
+def alternatives(problem: Problem, found: Found, held: Belief) -> list[Model]:
     """
-    Return fits of what may be instead of what was found.
+    Return what may be instead of what was found.
 
     Guesses go to another valley with a rival that does as well, and back with a cause that is not
     there.
@@ -112,24 +113,42 @@ def alternatives(problem: Problem, found: Found, held: Belief) -> list[Fit]:
     :param problem: the bins.
     :param found: what the search has found.
     :param held: what is believed of it.
-    :return: the fits with rivals that cannot be told from causes, and without those that are not
+    :return: models with rivals that cannot be told from causes, and without those that are not
         believed.
     """
-    fits = []
+    models = []
     for k in range(len(held.weighed)):
-        fits += [rival.fit for rival in equals(problem, found, k)]
+        models += [rival.fit.model for rival in equals(problem, found, k)]
         if k not in held.accepted and math.isfinite(found.without[k].cost):
-            fits.append(found.without[k])
-    return fits
+            models.append(found.without[k].model)
+    return models
 
 
-def moved(problem: Problem, final: Fit, others: Sequence[Fit]) -> tuple[Moved, ...]:
+def read_right(ready: Prepared, final: Fit) -> list[Model]:
+    """
+    Return what may be instead of what was found, since the motion was read with errors.
+
+    No force makes the errors of a motion. A fit makes little of them, by a stiff cable that is too
+    soft or damped too much. With as many errors again the numbers go farther the same way: as far
+    back they may be in truth.
+
+    :param ready: the bins.
+    :param final: the fit of what was found.
+    :return: its model with the numbers back there, if the file guesses any.
+    """
+    if not any(t.guessed for t in ready.problem.tolerances):
+        return []
+    again = ready.read_again().problem.fitted(final.model, rounds=6, accuracy=1e-4).model.moved
+    return [replace(final.model, moved=2.0 * final.model.moved - again)]
+
+
+def moved(problem: Problem, final: Fit, others: Sequence[Model]) -> tuple[Moved, ...]:
     """
     Return the numbers of the file as they were fitted within their tolerances.
 
     :param problem: the bins.
     :param final: the fit of what was found.
-    :param others: fits of what may be instead.
+    :param others: what may be instead.
     :return: the numbers with their intervals.
     """
     intervals = number_intervals(problem, final, others)

@@ -19,6 +19,7 @@ from scipy.stats import t as student
 from tendon_ros.base.parameter import Parameter
 from tendon_ros.effects import find
 from tendon_ros.identify.axis import Axis
+from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import SUDDEN
 
@@ -165,15 +166,15 @@ def _overlap(ends: tuple[float, float], value: float, known: Axis | None) -> boo
 
 
 def number_intervals(
-    problem: Problem, fit: Fit, others: Sequence[Fit] = ()
+    problem: Problem, fit: Fit, others: Sequence[Model] = ()
 ) -> list[tuple[float, float]]:
     """
     Return the 95 % intervals of the numbers of the file that may move.
 
     :param problem: the data.
     :param fit: the fit.
-    :param others: fits of other explanations that may hold as well; what a guess is in them lies
-        within, too.
+    :param others: other explanations that may hold as well; what a guess is in them lies within,
+        too.
     :return: low and high of each tolerance, in the unit of its axis.
     """
     own = fit.slope.shape[1] - len(problem.tolerances)
@@ -187,7 +188,7 @@ def number_intervals(
             continue
         # what laws get wrong pulls at a guess as it does at a size
         ends = _on_axis(t.axis, z, s, SIZE_FORM * abs(t.axis.value(z)))
-        values = [t.axis.value(float(other.model.moved[n])) for other in others]
+        values = [t.axis.value(float(other.moved[n])) for other in others]
         found.append((min(ends[0], *values), max(ends[1], *values)) if values else ends)
     return found
 

@@ -117,6 +117,7 @@ def _row(model: Model) -> dict[str, Any]:
         'z': [list(row) for row in model.z],
         'bristle': [[*key, z] for key, z in model.bristle.items()],
         'moved': model.moved.tolist(),
+        'rubs': list(model.rubs),
     }
 
 
@@ -126,6 +127,7 @@ def _model(row: dict[str, Any]) -> Model:
         tuple(tuple(z) for z in row['z']),
         {(place, name): float(z) for place, name, z in row['bristle']},
         np.array(row['moved'], dtype=np.float64),
+        tuple(row['rubs']),
     )
 
 

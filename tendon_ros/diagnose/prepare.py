@@ -71,6 +71,16 @@ class Prepared:
         ]
         return _problems(rollouts.like(segments), noise, self.shift, self.looser, self.likely)
 
+    def read_again(self) -> Prepared:
+        """Return the same had the motors been read once more, with other errors as large."""
+        rollouts = self.whole.rollouts
+        segments = [
+            replace(segment, motion=again)
+            for segment, (again, _) in zip(rollouts.segments, self.noise.motions, strict=True)
+        ]
+        again = rollouts.like(segments)
+        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+
     def quieter(self, other: Prepared) -> bool:
         """
         Return whether a channel tells much more here.

@@ -133,7 +133,7 @@ def diagnose(
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
-    file = heard.problem.empty
+    file = heard.problem.written
     # numbers that went along with something unknown say nothing of the machine
     astray = not kept and foretells(heard.held, final.model, file)
     final = heard.problem.centred(heard.problem.fitted(file, rounds=0) if astray else final)
@@ -156,7 +156,8 @@ def diagnose(
         names = sorted(measured)
         rig = with_encoders(instrument, given)
         ahead = next_experiments(rig, names, problem, found, held, jobs, patience, report)
-    moved = gather.moved(heard.problem, final, gather.alternatives(problem, found, held))
+    others = [*gather.alternatives(problem, found, held), *gather.read_right(heard, final)]
+    moved = gather.moved(heard.problem, final, others)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,

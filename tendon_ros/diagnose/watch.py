@@ -256,7 +256,7 @@ class Watch:
         if used.mean() < ENOUGH * (1.0 - self.settings.warm_up / self.settings.window):
             return replace(report, state='resting')
         problem = Problem(problem.rollouts, problem.tolerances, [used])
-        left = problem.left(problem.empty)
+        left = problem.left(problem.written)
         if not np.isfinite(left).all():
             faults['motors'] = (
                 f'the model of {self.instrument.name} cannot follow the measured motion; see '

@@ -7,12 +7,13 @@ Every unknown has a place on its axis, so that fits and priors need no units.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.effects import find
 from tendon_ros.effects.presliding_friction import BENDING
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.candidate import Candidate
@@ -40,13 +41,29 @@ class Model:
 
     ``z``: for each cause the places of its parameters; ``bristle``: by pulley place and name, what
     dry friction has beside its size, the pre-sliding angle only where no cause has it; ``moved``:
-    of each tolerance, in its deviations, shape (tolerances,).
+    of each tolerance, in its deviations, shape (tolerances,). ``rubs``: places where the file has
+    dry friction of which it does not say over which angle it builds up.
     """
 
     causes: tuple[Candidate, ...]
     z: tuple[tuple[float, ...], ...]
     bristle: Mapping[tuple[str, str], float]
     moved: FloatArray
+    rubs: tuple[str, ...] = ()
+
+    @classmethod
+    def of_file(cls, effects: Sequence[EffectUse], tolerances: int) -> Model:
+        """
+        Return an instrument file without causes, from which fits begin.
+
+        :param effects: of the file.
+        :param tolerances: how many numbers of it may move.
+        :return: all numbers as they are; its dry friction builds up as that of a cause does.
+        """
+        bent = {use.place for use in effects if use.effect == BENT}
+        rubs = tuple(sorted({u.place for u in effects if find(u.effect).dry} - bent))
+        nothing = cls((), (), {}, np.zeros(tolerances), rubs)
+        return replace(nothing, bristle=nothing._bristles(()))
 
     def values(self, k: int) -> dict[str, float]:
         """
@@ -88,7 +105,8 @@ class Model:
         """
         kept = [k for k in range(len(self.causes)) if k not in which]
         causes = tuple(self.causes[k] for k in kept)
-        return Model(causes, tuple(self.z[k] for k in kept), self._bristles(causes), self.moved)
+        z = tuple(self.z[k] for k in kept)
+        return replace(self, causes=causes, z=z, bristle=self._bristles(causes))
 
     def joined(self, cause: Candidate, values: Mapping[str, float]) -> Model:
         """
@@ -100,11 +118,11 @@ class Model:
         """
         causes = (*self.causes, cause)
         row = cause.coordinates.place(values)
-        return Model(causes, (*self.z, row), self._bristles(causes), self.moved)
+        return replace(self, causes=causes, z=(*self.z, row), bristle=self._bristles(causes))
 
     def _bristles(self, causes: Sequence[Candidate]) -> dict[tuple[str, str], float]:
         """Return what the dry friction of some causes has beside its size, as far as known."""
-        dry = sorted({c.place for c in causes if c.dry})
+        dry = sorted({*self.rubs, *(c.place for c in causes if c.dry)})
         own = {c.place for c in causes if c.effect == BENT}
         return {
             (place, name): self.bristle.get((place, name), 0.0)

@@ -106,7 +106,12 @@ class Residuals:
 
     @property
     def empty(self) -> Model:
-        """The instrument file as it is."""
+        """The instrument file without causes, from which fits begin."""
+        return Model.of_file(self.rollouts.instrument.effects, len(self.tolerances))
+
+    @property
+    def written(self) -> Model:
+        """The instrument file as it is, with friction as rigid as it says."""
         return Model((), (), {}, np.zeros(len(self.tolerances)))
 
     @property

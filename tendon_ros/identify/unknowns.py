@@ -6,6 +6,8 @@ What a fit moves, how far each may go, what a deviation costs before any data, a
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,7 +38,7 @@ class Unknowns(Residuals):
             at += len(row)
         bristle = {key: float(z) for key, z in zip(like.bristle, x[at:], strict=False)}
         at += len(bristle)
-        return Model(like.causes, tuple(rows), bristle, x[at:].copy())
+        return replace(like, z=tuple(rows), bristle=bristle, moved=x[at:].copy())
 
     def axes(self, model: Model) -> list[Axis]:
         """Return the axes of all unknowns, in their order."""

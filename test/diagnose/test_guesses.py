@@ -1,6 +1,7 @@
 """Guesses of the file that have far to go: the right cause is found beside them."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -8,13 +9,14 @@ import pytest
 from tendon_ros.diagnose.belief import Belief
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.gather import alternatives
+from tendon_ros.diagnose.gather import alternatives, read_right
 from tendon_ros.diagnose.guesses import astray, better, under_way
 from tendon_ros.diagnose.intervals import number_intervals
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.signals import Signals
 
 COULOMB = Candidate('coulomb_friction', 'pulley_axis')
 STRIBECK = Candidate('stribeck_friction', 'pulley_axis')
@@ -96,7 +98,7 @@ def test_a_guess_is_as_uncertain_as_explanations_differ(problem):
     rubbing = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.05}))
     free = problem.fitted(problem.empty)
     alone = number_intervals(problem, rubbing)
-    both = number_intervals(problem, rubbing, [free])
+    both = number_intervals(problem, rubbing, [free.model])
     wider = [a != b for a, b in zip(alone, both, strict=True)]
     guessed = [t.guessed for t in problem.tolerances]
     assert any(wider)
@@ -115,5 +117,28 @@ def test_what_may_be_instead_is_an_equal_rival_or_that_a_doubted_cause_is_not_th
     worse = Rival(Candidate('gravity', 'pulley_axis'), start)
     found = Found(states=[start, final], rivals=[[rival, worse]], without=[start])
     doubted = Belief((None,), {}, (), (), (), None, ())
-    assert alternatives(problem, found, doubted) == [rival.fit, start]
-    assert alternatives(problem, found, replace(doubted, accepted=(0,))) == [rival.fit]
+    assert alternatives(problem, found, doubted) == [rival.fit.model, start.model]
+    assert alternatives(problem, found, replace(doubted, accepted=(0,))) == [rival.fit.model]
+
+
+def test_guesses_may_be_as_far_back_as_other_readings_take_them(measured_on):
+    """Readings a tenth farther apart make an inertia a tenth less."""
+    body = load_instrument('single_body')
+    body = replace(body, tolerances={'pulley_body.inertia': math.inf, 'pulley_body.damping': 0.0})
+    ready = prepared([measured_on(body, settings=(('amplitude', '25 deg'),))], body)
+    [segment], [(_, smoother)] = ready.whole.rollouts.segments, ready.noise.motions
+    motion = segment.motion
+    farther = Signals.smooth(motion.start, motion.step, 1.1 * motion.value)
+    ready = replace(ready, noise=replace(ready.noise, motions=((farther, smoother),)))
+    final = ready.problem.fitted(ready.problem.empty)
+    [right] = read_right(ready, final)
+    [inertia] = ready.problem.tolerances
+    was, back = (inertia.axis.value(m.moved[0]) for m in (final.model, right))
+    assert back / was == pytest.approx(1.1, rel=0.02)
+    _, high = number_intervals(ready.problem, final, [right])[0]
+    assert high >= back
+
+
+def test_what_is_measured_stays_where_it_was_read(bench, sound):
+    ready = prepared(list(sound), bench)
+    assert read_right(ready, ready.problem.fitted(ready.problem.empty, rounds=0)) == []
