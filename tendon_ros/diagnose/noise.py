@@ -207,7 +207,7 @@ def _recounted(instrument: Instrument, segment: Segment, recording: Recording) -
         # the middle of a bin lies between two readings, which share their noise
         read = np.arange(-0.5 * sampling, len(motion) * segment.period, sampling)
         between: FloatArray = CubicSpline(bins, motion)(read)
-        other = recounted(between, reading.of(between, sampling), reading.count)
+        other = recounted(between, reading.still, reading.apart(between, sampling))
         # what lies between bins is not known to a count of a fine encoder: only changes count
         found: FloatArray = motion + np.interp(bins, read, other - between)
         return found

@@ -81,15 +81,15 @@ class Driven:
     """
     What a drive did, as finely as its encoder tells.
 
-    ``angle``: by time from the first reading [rad]; ``error`` [rad] of each reading, shape (n,),
-    that counts in steps of ``count`` [rad]; ``inertia`` [kg m^2] by ``torque`` [N m], root mean
-    square of what the motor reported.
+    ``angle``: by time from the first reading [rad]; ``error`` [rad] of a reading at rest, and
+    ``apart`` [rad] of each where it moves, shape (n,); ``inertia`` [kg m^2] by ``torque`` [N m],
+    root mean square of what the motor reported.
     """
 
     time: FloatArray
     angle: CubicSpline
-    error: FloatArray
-    count: float
+    error: float
+    apart: FloatArray
     inertia: float
     torque: float
 
@@ -119,8 +119,8 @@ class Driven:
         return cls(
             time,
             CubicSpline(time, fine),
-            reading.of(fine, channel.sampling),
-            reading.count,
+            reading.still,
+            reading.apart(fine, channel.sampling),
             float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)]),
             float(np.sqrt(np.mean(recording[torques[0]].value ** 2))),
         )
@@ -137,7 +137,8 @@ class Driven:
         middles, _ = self._bins(period)
         coarse = CubicSpline(middles, self.angle(middles))
         inner = self.time[(self.time > SETTLING) & (self.time < middles[-2])]
-        if np.mean((coarse(inner) - self.angle(inner)) ** 2) <= np.mean(self.error**2):
+        error = np.sqrt(self.error**2 + np.mean(self.apart**2))
+        if np.sqrt(np.mean((coarse(inner) - self.angle(inner)) ** 2)) <= error:
             return 0.0
         return self.unseen(period)
 
@@ -194,6 +195,6 @@ class Driven:
     def _counted(self) -> CubicSpline:
         """What counts make of the angle."""
         angle: FloatArray = self.angle(self.time)
-        known = np.min(self.error) <= 0.0
-        made_up = 0.0 * angle if known else recounted(angle, self.error, self.count) - angle
+        known = self.error <= 0.0
+        made_up = 0.0 * angle if known else recounted(angle, self.error, self.apart) - angle
         return CubicSpline(self.time, made_up)

@@ -55,14 +55,14 @@ def motion_of(
     )
     reading = reading_error(channel, sensor)
     read = channel.at(grid)
-    error, count = reading.of(read, sampling), reading.count
     near = gap < 1.5 * sampling
-    found = smoothed(read, near, error, count)
+    errors = reading.still, reading.count, reading.apart(read, sampling)
+    found = smoothed(read, near, *errors)
     # straight between readings whose stamps scatter, the motion would bend at random: only what
     # they are off a smooth motion may go straight
     for _ in range(CURVED if np.any(gap[near] > EVEN * sampling) else 0):
         off = channel.value - CubicSpline(grid, found)(channel.time)
-        found = smoothed(found + np.interp(grid, channel.time, off), near, error, count)
+        found = smoothed(found + np.interp(grid, channel.time, off), near, *errors)
     return found
 
 
@@ -101,21 +101,18 @@ class ReadingError:
     late: float
     count: float
 
-    def at(self, speed: FloatArray) -> FloatArray:
-        """Return one deviation of readings, by speed in their unit a second, shape (n,)."""
-        return np.hypot(self.still, self.late * speed)
-
-    def of(self, motion: FloatArray, sampling: float) -> FloatArray:
+    def apart(self, motion: FloatArray, sampling: float) -> FloatArray:
         """
-        Return one deviation of each reading of a motion.
+        Return what the time of each reading of a motion makes of it.
 
         :param motion: evenly read, smooth or not, shape (n,).
         :param sampling: time between readings [s].
-        :return: shape (n,).
+        :return: one deviation of each, shape (n,).
         """
         if self.late <= 0.0:
-            return np.full(len(motion), self.still)
-        return self.at(speed_of(motion, sampling * np.arange(len(motion), dtype=np.float64)))
+            return np.zeros(len(motion))
+        time = sampling * np.arange(len(motion), dtype=np.float64)
+        return self.late * np.abs(speed_of(motion, time))
 
 
 def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:
@@ -133,7 +130,8 @@ def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:
         count = float(np.quantile(steps, 0.02)) if steps.size else 0.0
         return ReadingError(count / np.sqrt(12.0), 0.0, count)
     known = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-    told = scatter(channel, max(sensor.resolution, sensor.noise))
+    moves = sensor.kind == 'angle'
+    told = scatter(channel, max(sensor.resolution, sensor.noise)) if moves else None
     if told is None or told.usual <= NOISIER * known:
         return ReadingError(known, 0.0, sensor.resolution)
     return ReadingError(max(known, told.still), told.late, sensor.resolution)

@@ -32,7 +32,6 @@ _SETTLES = 15  # solutions until what rests has found its place within the count
 #: is off by four
 _FARTHEST, _RAREST = 2.6, 4.0
 _TOGETHER = (4, 16)  # readings whose mean tells what one does not
-_ROUNDED = 1e-6  # part of an error's power that digits may make
 _USUAL = 0.9  # deviations that the smoother leaves
 RESTING = 0.04  # [s] within which what moves has moved by a count
 SHAKES = 10.0  # counts from one turn to the next, no later than that, of what does not rest
@@ -66,77 +65,73 @@ def at_rest(angle: FloatArray, error: float, period: float) -> BoolArray:
 
 
 def smoothed(
-    value: FloatArray, known: BoolArray, error: FloatArray | float, count: float
+    value: FloatArray,
+    known: BoolArray,
+    error: float,
+    count: float,
+    apart: FloatArray | None = None,
 ) -> FloatArray:
     """
     Return the least jerky motion within the error of a sensor.
 
     :param value: uniformly sampled readings, shape (n,).
     :param known: which samples were measured, shape (n,); the others are bridged.
-    :param error: standard deviation of a reading, or of each; zero leaves known samples as they
-        are.
+    :param error: standard deviation of a reading; zero leaves known samples as they are.
     :param count: step between readings; zero where the sensor has none.
+    :param apart: standard deviation of what the time of each reading makes of it, shape (n,).
     :return: shape (n,).
     """
+    apart = np.zeros(len(value)) if apart is None else apart
     weight = known.astype(np.float64)
     filled = np.interp(np.arange(len(value)), np.flatnonzero(known), value[known])
-    error = np.broadcast_to(np.asarray(error, dtype=np.float64), value.shape)
-    if np.min(error) <= 0.0:
+    if error <= 0.0:
         bridged = _Least(weight, np.full(len(value), 1e-3)).near(filled, filled)
         return np.where(known, value, bridged)
     travel = maximum_filter1d(filled, _RESTS) - minimum_filter1d(filled, _RESTS)
     rests: BoolArray = travel < 1.25 * count
     within: FloatArray = np.where(rests, 0.5 * count, 0.0)
-    weight = weight * (np.min(error) / error) ** 2
-    exponent = np.where(rests, _STRONGEST, _of_motion(filled, weight, known & ~rests, error))
+    each = np.hypot(error, apart)
+    weight *= (error / each) ** 2
+    exponent = np.where(rests, _STRONGEST, _of_motion(filled, weight, known & ~rests, each))
     found = filled
     while True:
         found = _resting(found, filled, weight, exponent, within)
-        off = _too_far(np.where(known, found - value, 0.0), error, count) & (exponent > _WEAKEST)
+        off = _too_far(np.where(known, found - value, 0.0), error, apart) & (exponent > _WEAKEST)
         if not off.any():
             return found
         near = maximum_filter1d(off.astype(np.int8), _SEEN) > 0
         exponent = np.where(near, np.maximum(exponent - 1, _WEAKEST), exponent)
 
 
-def recounted(motion: FloatArray, error: FloatArray, count: float) -> FloatArray:
+def recounted(motion: FloatArray, error: float, apart: FloatArray) -> FloatArray:
     """
     Return a smooth motion as it would be found were it read again, counts half a count elsewhere.
 
     :param motion: uniformly sampled, shape (n,).
-    :param error: standard deviation of each reading, above zero, shape (n,).
-    :param count: step between readings; zero where the sensor has none.
-    :return: shape (n,); what differs is what counts and other noise make of a motion.
+    :param error: standard deviation of a reading of what does not move, above zero.
+    :param apart: of what the time of each reading makes of it, shape (n,).
+    :return: shape (n,); what differs is what counts and chance make of a motion.
     """
+    count = error * np.sqrt(12.0)
     # the same motion is always read the same way: diagnoses are to be repeatable
-    chance = np.random.default_rng(0).normal(size=len(motion))
-    again = motion + _uncounted(error, count) * chance
-    if count > 0.0:
-        again = count * np.round(again / count + 0.5) - 0.5 * count
-    return smoothed(again, np.ones(len(again), dtype=np.bool_), error, count)
+    again = motion + apart * np.random.default_rng(0).normal(size=len(motion))
+    counted = count * np.round(again / count + 0.5) - 0.5 * count
+    known = np.ones(len(motion), dtype=np.bool_)
+    return smoothed(counted, known, error, count, apart)
 
 
-def _too_far(left: FloatArray, error: FloatArray, count: float) -> BoolArray:
+def _too_far(left: FloatArray, error: float, apart: FloatArray) -> BoolArray:
     """
     Return where a motion is farther off its readings than their errors make it, shape (n,).
 
-    Where they scatter by chance, several have a mean that is off by less than one is.
+    Where their times are what they are off by, several have a mean that is off by less than one.
     """
-    counted, scattered = count / np.sqrt(12.0), _uncounted(error, count)
-    off: BoolArray = np.abs(left) > _FARTHEST * counted + _RAREST * scattered
-    if not scattered.any():
-        return off
-    by_chance = scattered > counted
-    for n in _TOGETHER:
-        mean = np.sqrt(uniform_filter1d(error**2, n) / n)
+    off: BoolArray = np.abs(left) > _FARTHEST * error + _RAREST * apart
+    by_chance = apart > error
+    for n in _TOGETHER if by_chance.any() else ():
+        mean = np.sqrt(uniform_filter1d(error**2 + apart**2, n) / n)
         off |= by_chance & (np.abs(uniform_filter1d(left, n)) > _RAREST * mean)
     return off
-
-
-def _uncounted(error: FloatArray, count: float) -> FloatArray:
-    """Return what readings are off beyond their counts: one deviation of each, shape (n,)."""
-    power = error**2 - count**2 / 12.0
-    return np.sqrt(np.where(power > _ROUNDED * error**2, power, 0.0))
 
 
 def _of_motion(value: FloatArray, weight: FloatArray, moving: BoolArray, error: FloatArray) -> int:

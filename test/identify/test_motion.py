@@ -8,7 +8,7 @@ from tendon_ros.identify.motion import motion_of
 from tendon_ros.model.instrument import Sensor
 
 COUNT, SAMPLING = 1e-4, 0.01
-ENCODER = Sensor('encoder_arm', 'actuator/pulley_arm/position', 'angle', 'arm', resolution=COUNT)
+ENCODER = Sensor('encoder_arm', 'angle', 'arm', 'actuator/pulley_arm/position', resolution=COUNT)
 
 
 @pytest.mark.parametrize('scatter', [0.0, 0.05, 0.2])

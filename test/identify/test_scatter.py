@@ -12,7 +12,7 @@ from tendon_ros.identify.smoothing import recounted
 from tendon_ros.model.instrument import Sensor
 
 COUNT, SAMPLING = 3.5e-4, 0.0025
-ENCODER = Sensor('encoder_arm', 'actuator/pulley_arm/position', 'angle', 'arm', resolution=COUNT)
+ENCODER = Sensor('encoder_arm', 'angle', 'arm', 'actuator/pulley_arm/position', resolution=COUNT)
 BEAT = SAMPLING * np.arange(4000)
 
 
@@ -37,7 +37,8 @@ def test_stamps_tell_times_to_some_hundredths_of_a_millisecond(jitter):
     assert found.late == pytest.approx(2e-5, rel=0.1)
     assert found.still < 1.6 * COUNT / np.sqrt(12.0)
     error = reading_error(read(late=2e-5, jitter=jitter), ENCODER)
-    assert error.at(np.array([0.0, 20.0])) == pytest.approx([error.still, 4e-4], rel=0.15)
+    at_20 = error.apart(20.0 * BEAT, SAMPLING)[100:-100]
+    assert at_20 == pytest.approx(4e-4, rel=0.15)
 
 
 @pytest.mark.parametrize('jitter', [0.0, 0.3])
@@ -81,7 +82,7 @@ def test_a_motion_that_is_read_again_is_off_by_as_much():
     error = reading_error(late, ENCODER)
     truth = angle(BEAT)
     found = motion_of(late, ENCODER, 0.0, SAMPLING, BEAT.size)
-    again = recounted(found, error.of(found, SAMPLING), error.count)
+    again = recounted(found, error.still, error.apart(found, SAMPLING))
     inner = slice(40, 1100)  # before it rests
     assert np.std((again - found)[inner]) == pytest.approx(np.std((found - truth)[inner]), rel=0.4)
-    assert np.array_equal(again, recounted(found, error.of(found, SAMPLING), error.count))
+    assert np.array_equal(again, recounted(found, error.still, error.apart(found, SAMPLING)))
