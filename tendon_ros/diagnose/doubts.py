@@ -74,6 +74,23 @@ def absurd_words(moved: Sequence[Moved]) -> list[str]:
     ]
 
 
+def ended_words(moved: Sequence[Moved]) -> list[str]:
+    """
+    Say which numbers of the file something takes to the end of their tolerance.
+
+    :param moved: the numbers of the file as they were fitted.
+    :return: a sentence for each.
+    """
+    return [
+        f'the {one.quantity.replace("_", " ")} of {one.place} has moved to the end of its '
+        f'tolerance ({one.off:.2g} deviations), and still more is wanted: the file knows it less '
+        'well than it says, it changes from one recording to the next, or something unknown is '
+        'told by it'
+        for one in moved
+        if one.ended
+    ]
+
+
 def weak_words(ready: Prepared, final: Model) -> list[str]:
     """
     Say which motors report far less than the motion takes, with all that was found.

@@ -60,6 +60,8 @@ class Floor:
 
 #: deviations from what the file says that a number which was measured hardly is
 STRAINED = 2.0
+#: deviations by which one is at the end of its tolerance
+ENDED = 2.9
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,11 @@ class Moved:
     def strained(self) -> bool:
         """Whether it has moved as far as what was measured hardly can: a fault may hide in it."""
         return self.off > STRAINED
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has moved to the end of its tolerance."""
+        return self.off >= ENDED
 
     @property
     def absurd(self) -> bool:

@@ -14,16 +14,15 @@ import numpy as np
 
 from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.enough import KEPT
-from tendon_ros.diagnose.form import creep_profile, form_power
+from tendon_ros.diagnose.form import creep_profile
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import loose
-from tendon_ros.diagnose.unexplained import left_over, surprising
+from tendon_ros.diagnose.unexplained import surprising, unexplained
 from tendon_ros.diagnose.worth import (
     beyond_laws,
     hopeless,
@@ -186,8 +185,7 @@ class Looks:
         problem, start, final = self.ready.problem, self.found.start, self.found.final
         if problem.by_misfit or not self._worth_more():
             return
-        form = form_power(problem, start, final, resting=False)
-        if left_over(stays(self.ready, final).whole, form) < NAMED:
+        if unexplained(self.ready, self.found, final) < NAMED:
             return
         holds = creep_profile(problem, start, final) > LEAST
         if problem.structured(np.where(holds, final.left, 0.0)) < LEAST_IN_ONE:

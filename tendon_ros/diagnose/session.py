@@ -23,6 +23,7 @@ from tendon_ros.diagnose.doubts import (
     absurd_words,
     brief_words,
     coarse_words,
+    ended_words,
     lost_words,
     loud_words,
     scaled_words,
@@ -31,14 +32,12 @@ from tendon_ros.diagnose.doubts import (
     weak_words,
 )
 from tendon_ros.diagnose.evidence import Evidence
-from tendon_ros.diagnose.form import form_power
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps, offs
 from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intervals import unsized
-from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.looks import Looks
 from tendon_ros.diagnose.memory import Memory
@@ -49,7 +48,7 @@ from tendon_ros.diagnose.patience import Patience, USUAL
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.spread import known_words
-from tendon_ros.diagnose.unexplained import left_over
+from tendon_ros.diagnose.unexplained import unexplained
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque, with_encoders
 from tendon_ros.identify.magnitude import magnitude_of
@@ -125,8 +124,7 @@ def diagnose(
     if len(model.causes) < len(believed.model.causes):
         believed = problem.fitted(model, rounds=6)
     left = problem.structured(believed.left)
-    form = form_power(problem, found.start, believed, resting=False)
-    beyond = left_over(stays(ready, believed).whole, form)
+    beyond = unexplained(ready, found, believed)
     places = whereabouts(ready, found, held.accepted, believed, left)
     # where there is no gap, there is nothing that anything could stand in for
     kept = held.kept if held.named or beyond >= NAMED else held.polled
@@ -187,6 +185,7 @@ def diagnose(
             *lost_words(heard, final.model),
             *brief_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
+            *(ended_words(moved) if beyond >= NAMED else []),
             *(loud_words(heard) if verdict == 'no_gap' else []),
         ),
         left_out=(

@@ -9,6 +9,7 @@ from tendon_ros.diagnose.doubts import (
     absurd_words,
     brief_words,
     coarse_words,
+    ended_words,
     lost_words,
     loud_words,
     scaled_words,
@@ -146,3 +147,11 @@ def test_what_happened_once_is_said_where_most_of_what_stays_lies(
     ready = prepared(spoilt((run,), EFFORT, knocked), body)
     words = brief_words(ready, ready.whole.empty)
     assert [w.split(' lies between ')[1].split()[0] for w in words] == told
+
+
+@pytest.mark.parametrize(('off', 'said'), [(0.0, False), (2.4, False), (2.97, True)])
+def test_a_number_at_the_end_of_its_tolerance_is_said(off, said):
+    moved = Moved('motor_drive', 'torque_gain', 0.915, (0.91, 0.92), '1', off=off)
+    words = ended_words([moved])
+    assert bool(words) is said
+    assert all(w.startswith('the torque gain of motor_drive has moved to the end') for w in words)

@@ -1,9 +1,17 @@
 """How likely something has a cause that was not named."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from tendon_ros.diagnose.evidence import ENDED
+from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import NAMED
-from tendon_ros.diagnose.unexplained import left_over
+from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.unexplained import left_over, unexplained
+from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
 
 
 @pytest.mark.parametrize(('left', 'form'), [(0.03, 0.0), (0.138, 0.029), (0.124, 0.022)])
@@ -15,3 +23,42 @@ def test_noise_that_wanders_is_no_gap(left, form):
 @pytest.mark.parametrize(('left', 'form'), [(0.2, 0.0), (0.5, 0.18), (20.0, 3.0)])
 def test_what_stays_beyond_noise_and_laws_has_a_cause(left, form):
     assert left_over(left, form) > NAMED
+
+
+@pytest.fixture(scope='module')
+def doubtful(measured_on):
+    """Return a body with friction that its file lists, whose motor is weaker in one run."""
+    body = load_instrument('single_body')
+    friction = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    settings = (('duration', '6 s'), ('amplitude', '40 deg'))
+    runs = [
+        measured_on(
+            body,
+            friction,
+            ('torque_gain', 'motor_body', {'gain': gain}),
+            settings=settings,
+            name=name,
+        )
+        for name, gain in (('cold', 0.9), ('warm', 0.5))
+    ]
+    file = replace(
+        body,
+        effects=(EffectUse(*friction),),
+        tolerances={
+            'pulley_body.coulomb_friction.torque': 0.01,
+            'motor_body.torque_gain': 0.01,
+        },
+    )
+    return prepared(runs, file)
+
+
+def test_what_takes_a_number_to_the_end_of_its_tolerance_is_more_than_a_law(doubtful):
+    problem = doubtful.problem
+    start = problem.fitted(problem.empty)
+    found = Found(states=[start])
+    assert max(abs(z) for t, z in problem.moved(start.model)) >= ENDED
+    assert unexplained(doubtful, found, start) > NAMED
+    # the same misfit, and no number at its end: the friction's law may be what is wrong
+    within = replace(start.model, moved=np.clip(start.model.moved, -2.0, 2.0))
+    less = unexplained(doubtful, found, replace(start, model=within))
+    assert less < unexplained(doubtful, found, start)

@@ -10,6 +10,7 @@ from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.tolerance import tolerances
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
 #: effect, place, parameters, and the relative error that noise and smoothing may leave
@@ -205,3 +206,26 @@ def test_a_fit_that_cannot_be_computed_where_it_begins_goes_back_towards_the_fil
     assert fit.cost < 1.2 * len(fit.left)
     monkeypatch.setattr(problem, 'left', lambda model: np.full_like(computed(model), np.inf))
     assert problem.fitted(replace(problem.empty, moved=far)).cost == math.inf
+
+
+def test_friction_that_the_file_lists_builds_up_over_an_angle(measured_on):
+    body = load_instrument('single_body')
+    friction = ('coulomb_friction', 'pulley_body', {'torque': 0.1})
+    bent = ('presliding_friction', 'pulley_body', {'torque': 0.0, 'angle': 2e-3})
+    settings = (('duration', '6 s'), ('amplitude', '3 deg'))
+    run = measured_on(body, friction, bent, settings=settings)
+    listed = replace(body, effects=(EffectUse(*friction),))
+    problem = prepared([run], listed).problem
+    rigid = float(np.mean(problem.left(problem.written) ** 2))
+    fit = problem.fitted(problem.empty)
+    assert rigid > 1.5
+    assert fit.cost / len(fit.left) < 1.2
+    assert fit.model.beside('pulley_body', 'angle') == pytest.approx(2e-3, rel=0.3)
+    # beside another friction of the same pulley, and without it again
+    joined = fit.model.joined(Candidate('tension_friction', 'pulley_body'), {'coefficient': 0.1})
+    assert joined.without(0).bristle == fit.model.bristle
+    known = prepared(
+        [run], replace(body, effects=(EffectUse(*friction), EffectUse(*bent)))
+    ).problem
+    assert known.empty.bristle == {}
+    assert np.mean(known.left(known.empty) ** 2) < 1.2
