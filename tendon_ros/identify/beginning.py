@@ -7,18 +7,19 @@ a weight stretches its cable before anything moves. Left behind, light pulleys w
 second, and friction would hold them where they never were.
 
 What lies within a play is held by nothing but friction: it begins where its own sensor reads it,
-and would swing for seconds about where a weight comes to rest in the end.
+and would swing for seconds about where a weight comes to rest in the end. So does what moves where
+a recording begins while motors move, or swings while they rest: as fast as its sensor reads it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.identify.segment import Segment
+from tendon_ros.identify.segment import Measured, Segment
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.numbers import Numbers
 from tendon_ros.model.signals import Signals
@@ -29,6 +30,10 @@ FloatArray = NDArray[np.float64]
 RESTING = 1.0  # [s] before the recording begins, in which the model comes to rest
 #: of the stiffest link: what a play or a slack cable counts as, which hold nothing by themselves
 FAINT = 1e-6
+#: [s] that tell how fast something swings, and errors of its sensor that it moves by in these
+SWING, FAR = 0.06, 10.0
+BENT = 3  # degree of what a swing looks like for so long
+SUDDEN = 0.7  # part of the speed that a motor has soon after, with which no motion begins
 
 
 class Beginning:
@@ -63,45 +68,81 @@ class Beginning:
         along = self._following @ shift
         return {name: pose[name] + more for name, more in zip(pose, along.tolist(), strict=True)}
 
-    def loose(self, numbers: Numbers, motion: Signals) -> dict[str, float]:
+    def loose(self, numbers: Numbers, motion: Signals) -> dict[str, tuple[float, float]]:
         """
-        Return where pulleys begin that lie within the play of all that they hang on.
+        Return where pulleys begin that do not rest where they would come to rest.
 
         :param numbers: after the effects in force.
         :param motion: what truly drove.
-        :return: angles [rad] by pulley, of those whose own sensor was read.
+        :return: angles [rad] and speeds [rad/s] by pulley, of those whose own sensor was read and
+            which swing, or lie within the play of all that they hang on.
         """
+        found = {}
+        for name, sensor, offset, gain in self._read(numbers):
+            own = self._swinging(sensor)
+            if own is not None:
+                found[name] = ((own[0] - offset) / gain, own[1] / gain)
         if not numbers['play'].any():
-            return {}
+            return found
         one = self._instrument
         driven = motion.value[: len(self._segment.prescribed), 0].tolist()
         begun = {**self.pose(motion), **dict(zip(self._segment.prescribed, driven, strict=True))}
-        found = {}
-        for name, angle in self._read(numbers).items():
+        for name, sensor, offset, gain in self._read(numbers):
+            angle = float((sensor.value[np.isfinite(sensor.value)][0] - offset) / gain)
             links = numbers.loops_on(one.index(name))
             angles = np.array([{**begun, name: angle}.get(p.name, 0.0) for p in one.pulleys])
             stretched = np.abs(numbers['radius'][links] @ angles)
             if links and np.all(stretched < 0.5 * numbers['play'][links]):
-                found[name] = angle
+                found.setdefault(name, (angle, 0.0))
         return found
 
-    def _read(self, numbers: Numbers) -> dict[str, float]:
-        """Return what the first readings of inner pulleys say of their angles [rad]."""
-        first = {m.sensor.channel: m.value[np.isfinite(m.value)] for m in self._segment.measured}
-        return {
-            s.of: float((first[s.channel][0] - offset) / gain)
-            for s, offset, gain in zip(
-                self._instrument.sensors,
-                numbers['sensor_offset'],
-                numbers['sensor_gain'],
-                strict=True,
-            )
-            if s.kind == 'angle'
-            and s.of in self._segment.pose
-            and s.zeroed
-            and s.channel in first
-            and first[s.channel].size
+    def _read(self, numbers: Numbers) -> Iterator[tuple[str, Measured, float, float]]:
+        """Yield inner pulleys that have a sensor, what it read, and its offset [rad] and gain."""
+        measured = {
+            m.sensor.channel: m for m in self._segment.measured if np.isfinite(m.value).any()
         }
+        for s, offset, gain in zip(
+            self._instrument.sensors, numbers['sensor_offset'], numbers['sensor_gain'], strict=True
+        ):
+            inner = s.kind == 'angle' and s.of in self._segment.pose and s.zeroed
+            if inner and s.channel in measured:
+                yield s.of, measured[s.channel], float(offset), float(gain)
+
+    def _swinging(self, measured: Measured) -> tuple[float, float] | None:
+        """Return what a sensor reads at first, and its rate; None where it came from rest."""
+        first = self._first
+        if not (self._rests or self._under_way):
+            return None
+        known = first & np.isfinite(measured.value)
+        sensor = measured.sensor
+        error = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
+        if np.count_nonzero(known) <= BENT or np.ptp(measured.value[known]) <= FAR * error:
+            return None
+        time = self._segment.time
+        *_, rate, angle = np.polyfit(time[known] - time[0], measured.value[known], BENT)
+        return float(angle), float(rate)
+
+    @property
+    def _first(self) -> NDArray[np.bool_]:
+        """Which bins tell how it began, shape (bins,)."""
+        first: NDArray[np.bool_] = self._segment.time < self._segment.time[0] + SWING
+        return first
+
+    @cached_property
+    def _rests(self) -> bool:
+        """Whether all motors rest where the recording begins."""
+        still = self._segment.still
+        return bool(still) and all(row[self._first].all() for row in still)
+
+    @cached_property
+    def _under_way(self) -> bool:
+        """Whether a motor is as fast where the recording begins as soon after."""
+        first = np.flatnonzero(self._first)
+        for row, still in zip(self._segment.motion.value, self._segment.still, strict=False):
+            way = np.abs(row[first[[len(first) // 3, -1]]] - row[0])
+            if not still[first].any() and len(first) > BENT and 3.0 * way[0] > SUDDEN * way[1]:
+                return True
+        return False
 
     @cached_property
     def _following(self) -> FloatArray:

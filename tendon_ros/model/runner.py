@@ -213,16 +213,16 @@ class Runner:
             self._state[i] = float(angle[own])
             self._state[n + i] = float(velocity[own])
 
-    def hang(self, pose: Mapping[str, float]) -> None:
+    def hang(self, loose: Mapping[str, tuple[float, float]]) -> None:
         """
-        Put some pulleys somewhere at rest, all else unchanged.
+        Put some pulleys somewhere, all else unchanged.
 
-        :param pose: angles [rad] by pulley.
+        :param loose: angles [rad] and speeds [rad/s] by pulley.
         """
         at = self.structure
-        for name, angle in pose.items():
+        for name, (angle, speed) in loose.items():
             own = at.order.index(self.instrument.index(name))
-            self._state[own], self._state[at['N'] + own] = angle, 0.0
+            self._state[own], self._state[at['N'] + own] = angle, speed
 
     def bend(self, place: NDArray[np.intp], part: FloatArray) -> None:
         """

@@ -266,7 +266,7 @@ def follow(
     engine: str = 'auto',
     pose: Mapping[str, float] | None = None,
     resting: float = 0.0,
-    loose: Mapping[str, float] | None = None,
+    loose: Mapping[str, tuple[float, float]] | None = None,
 ) -> Rows:
     """
     Drive a model whose arrays are there already, from :func:`along`, as :func:`predict` does.
@@ -280,7 +280,8 @@ def follow(
     :param pose: as for :func:`predict`.
     :param resting: how long the signals had been where they begin [s]: what the effects in force
         make of the pose has happened by then.
-    :param loose: angles [rad] of pulleys that nothing holds, wherever they would come to rest.
+    :param loose: angles [rad] and speeds [rad/s] of pulleys that nothing holds, wherever they
+        would come to rest.
     :return: rows.
     """
     runner = Runner(instrument, arrays, engine)

@@ -1,6 +1,7 @@
 """The model begins at rest, and where the motors truly are."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from tendon_ros.identify.beginning import Beginning
 from tendon_ros.identify.segment import SETTLING
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.numbers import Numbers
 
 
 @pytest.fixture(scope='module')
@@ -101,6 +103,66 @@ def test_what_lies_within_a_play_begins_where_it_is_read(tmp_path, measured_on, 
     past = EffectUse('encoder_offset', 'encoder_arm', {'angle': 0.005})
     [rows] = moved.states([[weight, loose, past]])
     assert (abs(rows.angle[0, rig.index('arm')] - first + 0.005) < 1e-3) == lies
+
+
+@pytest.fixture(scope='module')
+def softly(tmp_path_factory, measured_on):
+    """Return an arm behind a soft gear, which swings for seconds, and a recording of it."""
+    path = tmp_path_factory.mktemp('soft') / 'soft.yaml'
+    path.write_text(GEARED.replace('60 N*m/rad', '8 N*m/rad').replace('0.05 N*m', '0.005 N*m'))
+    rig = load_instrument(path)
+    return rig, measured_on(rig, settings=(('duration', '8 s'), ('amplitude', '20 deg')))
+
+
+def cut(run, start, stop=math.inf):
+    """Return a part of a recording."""
+    return run.with_channels(
+        [
+            replace(c, time=c.time[own], value=c.value[own])
+            for c in run.channels.values()
+            for own in [(c.time >= start) & (c.time < stop)]
+        ]
+    )
+
+
+def test_a_recording_that_begins_on_the_way_begins_as_it_is_read(softly):
+    rig, run = softly
+    problem = prepared([cut(run, 2.3)], rig).problem
+    [segment] = problem.rollouts.segments
+    begun = Beginning(rig, segment).loose(Numbers(rig), segment.motion)
+    arm = run['pulley/pulley_arm/position']
+    at = segment.start + segment.time[0]
+    speed = np.interp(at, arm.time[50:-50], np.gradient(arm.value, arm.time)[50:-50])
+    assert begun['arm'] == (
+        pytest.approx(np.interp(at, arm.time, arm.value), abs=2e-3),
+        pytest.approx(speed, rel=0.2, abs=0.05),
+    )
+    # a motor that rested once so near the beginning has begun there
+    begins = (np.arange(len(segment.time)) == 0,)
+    unknown = problem.rollouts.like([replace(segment, still=begins)])
+    [read], [at_rest] = problem.rollouts.predicted([[]]), unknown.predicted([[]])
+    row = [m.sensor.of for m in segment.measured].index('arm')
+    off, swings = (np.std(segment.measured[row].value - x[row]) for x in (read, at_rest))
+    assert off < 0.03 * swings
+
+
+def test_a_recording_that_begins_at_rest_begins_there(softly):
+    rig, run = softly
+    [segment] = prepared([run], rig).problem.rollouts.segments
+    assert Beginning(rig, segment).loose(Numbers(rig), segment.motion) == {}
+
+
+def test_what_still_swings_where_motors_rest_begins_as_it_is_read(softly):
+    rig, run = softly
+    held = run['actuator/pulley_rotor/position']
+    arm = run['pulley/pulley_arm/position']
+    swing = 0.03 * np.cos(9.0 * arm.time + 0.7)
+    still = run.with_channels([replace(held, value=0.0 * held.value), replace(arm, value=swing)])
+    [segment] = prepared([still], rig).problem.rollouts.segments
+    begun = Beginning(rig, segment).loose(Numbers(rig), segment.motion)
+    at = segment.start + segment.time[0]
+    assert begun['arm'][0] == pytest.approx(0.03 * np.cos(9.0 * at + 0.7), abs=1e-3)
+    assert begun['arm'][1] == pytest.approx(-0.27 * np.sin(9.0 * at + 0.7), rel=0.1)
 
 
 def test_a_model_that_torques_drive_comes_to_no_rest(measured_on):
