@@ -114,9 +114,9 @@ class Beginning:
         if not (self._rests or self._under_way):
             return None
         known = first & np.isfinite(measured.value)
-        sensor = measured.sensor
-        error = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-        if np.count_nonzero(known) <= BENT or np.ptp(measured.value[known]) <= FAR * error:
+        if np.count_nonzero(known) <= BENT:
+            return None
+        if not np.ptp(measured.value[known]) > FAR * measured.floor > 0.0:
             return None
         time = self._segment.time
         *_, rate, angle = np.polyfit(time[known] - time[0], measured.value[known], BENT)

@@ -83,6 +83,8 @@ def _off(channel: Channel, apart: int, count: float) -> tuple[FloatArray, FloatA
     Of white noise the first is one deviation, shape (n,); the second is in units a second.
     """
     last = len(channel.time) - 3 * apart
+    if last < ENOUGH:
+        return None
     own = [slice(n * apart, n * apart + last) for n in range(4)]
     time, value = (np.array([row[s] for s in own]) for row in (channel.time, channel.value))
     moving = np.abs(value[3] - value[0]) > MOVES * count

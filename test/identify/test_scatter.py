@@ -59,6 +59,13 @@ def test_a_few_slips_are_no_scatter():
     assert scatter(replace(channel, value=slipped), COUNT).usual < 1.5 * COUNT / np.sqrt(12.0)
 
 
+@pytest.mark.parametrize('readings', [0, 1, 5, 50])
+def test_few_readings_tell_nothing(readings):
+    channel = read()
+    few = replace(channel, time=channel.time[:readings], value=channel.value[:readings])
+    assert scatter(few, COUNT) is None
+
+
 def test_what_shakes_does_not_scatter():
     time = BEAT
     shaking = angle(time) + 0.02 * np.sin(2.0 * np.pi * 45.0 * time)
