@@ -134,9 +134,10 @@ def read_right(ready: Prepared, final: Fit) -> list[Model]:
 
     :param ready: the bins.
     :param final: the fit of what was found.
-    :return: its model with the numbers back there, if the file guesses any.
+    :return: its model with the numbers back there, if motion drives it and the file guesses any.
     """
-    if not any(t.guessed for t in ready.problem.tolerances):
+    by_motion = any(s.prescribed for s in ready.whole.rollouts.segments)
+    if not by_motion or not any(t.guessed for t in ready.problem.tolerances):
         return []
     again = ready.read_again().problem.fitted(final.model, rounds=6, accuracy=1e-4).model.moved
     return [replace(final.model, moved=2.0 * final.model.moved - again)]
