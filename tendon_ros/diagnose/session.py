@@ -149,6 +149,7 @@ def diagnose(
     each = [patched(heard.problem, final.model, instrument, s.name) for s in segments]
     loops = closed_loop_gap(runs, instrument, each, segments)
     verdict = verdict_of(causes, beyond)
+    settled = verdict in ('no_gap', 'explained')
     ahead: tuple[NextExperiment, ...] = ()
     if plan and verdict != 'no_gap':
         names = sorted(measured)
@@ -186,10 +187,11 @@ def diagnose(
             *brief_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *(ended_words(moved) if beyond >= NAMED else []),
-            *(loud_words(heard) if verdict == 'no_gap' else []),
+            *(loud_words(heard) if settled else []),
         ),
         left_out=(
-            *(coarse_words(heard) if verdict == 'no_gap' else loud_words(heard)),
+            *([] if settled else loud_words(heard)),
+            *(coarse_words(heard) if verdict == 'no_gap' else []),
             *intake.left_out,
             *said_of_torque(instrument),
             *held_on,
