@@ -118,7 +118,11 @@ class Model:
         """
         causes = (*self.causes, cause)
         row = cause.coordinates.place(values)
-        return replace(self, causes=causes, z=(*self.z, row), bristle=self._bristles(causes))
+        # what friction of a wrong size has bent to says nothing of that of another
+        first = cause.dry and not any(c.dry and c.place == cause.place for c in self.causes)
+        known = {at: z for at, z in self.bristle.items() if not (first and at[0] == cause.place)}
+        bristle = replace(self, bristle=known)._bristles(causes)
+        return replace(self, causes=causes, z=(*self.z, row), bristle=bristle)
 
     def _bristles(self, causes: Sequence[Candidate]) -> dict[tuple[str, str], float]:
         """Return what the dry friction of some causes has beside its size, as far as known."""

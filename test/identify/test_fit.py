@@ -223,7 +223,9 @@ def test_friction_that_the_file_lists_builds_up_over_an_angle(measured_on):
     assert fit.model.beside('pulley_body', 'angle') == pytest.approx(2e-3, rel=0.3)
     # beside another friction of the same pulley, and without it again
     joined = fit.model.joined(Candidate('tension_friction', 'pulley_body'), {'coefficient': 0.1})
-    assert joined.without(0).bristle == fit.model.bristle
+    assert set(joined.without(0).bristle) == set(fit.model.bristle)
+    # what the file's friction has bent to says nothing of how another's builds up
+    assert not any(joined.bristle.values())
     known = prepared(
         [run], replace(body, effects=(EffectUse(*friction), EffectUse(*bent)))
     ).problem
