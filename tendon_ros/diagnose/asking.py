@@ -14,7 +14,8 @@ from tendon_ros.identify.screening import Proposal
 
 #: norm of a signature in noise deviations, imitations taken off, that leaves a trace
 TRACE = 2.0
-BELOW = 0.05  # part of the range of a reading that noise may make negative
+#: part of the range of a reading that noise may make negative, and errors of its sensor
+BELOW, FAR = 0.05, 6.0
 #: what may shift readings below zero that have no sign
 SHIFT = 'load_cell_bias'
 
@@ -93,11 +94,14 @@ def signed(problem: Problem, candidates: Sequence[Candidate]) -> list[Candidate]
 
 def _reads_below_zero(problem: Problem, sensor: str) -> bool:
     """Return whether a sensor reads below zero by more than noise."""
-    values = [
-        measured.value[np.isfinite(measured.value)]
+    own = [
+        measured
         for segment in problem.rollouts.segments
         for measured in segment.measured
         if measured.sensor.name == sensor
     ]
-    read = np.concatenate(values) if values else np.zeros(0)
-    return bool(read.size) and float(read.min()) <= -BELOW * float(np.ptp(read))
+    read = np.concatenate([m.value[np.isfinite(m.value)] for m in own]) if own else np.zeros(0)
+    if not read.size:
+        return False
+    noise = max(BELOW * float(np.ptp(read)), FAR * max(m.floor for m in own))
+    return float(read.min()) <= -noise

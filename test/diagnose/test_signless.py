@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.base.recording import Channel
 from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import looks
-from tendon_ros.diagnose.asking import lost, may_be_signless, signed
+from tendon_ros.diagnose.asking import BELOW, lost, may_be_signless, signed
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import judged
 from tendon_ros.diagnose.patience import Patience
@@ -62,6 +62,16 @@ def test_a_sign_that_readings_show_is_not_lost(axis, recorded, effects, seen):
     rows = judged(bare, [], [], candidates, {}, (), signed(problem, candidates))
     [why] = [row.why_not for row in rows if row.effect == SIGN.effect]
     assert (why == 'its readings go below zero by more than noise') is seen
+
+
+def test_what_noise_makes_negative_shows_no_sign(axis, measured_on):
+    sensors = tuple(replace(s, noise=0.15) if s.channel == EFFORT else s for s in axis.sensors)
+    loud = replace(axis, sensors=sensors)
+    settings = (('duration', '8 s'), ('amplitude', '40 deg'))
+    problem = prepared([measured_on(loud, SPRING, LOST, settings=settings)], loud).problem
+    [read] = [m.value for m in problem.rollouts.segments[0].measured]
+    assert np.nanmin(read) < -BELOW * np.ptp(read[np.isfinite(read)])
+    assert signed(problem, everyone(loud, [EFFORT])) == []
 
 
 def test_a_load_cell_may_be_biased_below_zero(bench, measured_on):
