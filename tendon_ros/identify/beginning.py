@@ -77,24 +77,27 @@ class Beginning:
         :return: angles [rad] and speeds [rad/s] by pulley, of those whose own sensor was read and
             which swing, or lie within the play of all that they hang on.
         """
-        found = {}
-        for name, sensor, offset, gain in self._read(numbers):
-            own = self._swinging(sensor)
-            if own is not None:
-                found[name] = ((own[0] - offset) / gain, own[1] / gain)
-        if not numbers['play'].any():
-            return found
-        one = self._instrument
+        plays = bool(numbers['play'].any())
         driven = motion.value[: len(self._segment.prescribed), 0].tolist()
         begun = {**self.pose(motion), **dict(zip(self._segment.prescribed, driven, strict=True))}
+        found = {}
         for name, sensor, offset, gain in self._read(numbers):
-            angle = float((sensor.value[np.isfinite(sensor.value)][0] - offset) / gain)
-            links = numbers.loops_on(one.index(name))
-            angles = np.array([{**begun, name: angle}.get(p.name, 0.0) for p in one.pulleys])
-            stretched = np.abs(numbers['radius'][links] @ angles)
-            if links and np.all(stretched < 0.5 * numbers['play'][links]):
-                found.setdefault(name, (angle, 0.0))
+            first = float(sensor.value[np.isfinite(sensor.value)][0])
+            angle, speed = self._swinging(sensor) or (first, 0.0)
+            at = (angle - offset) / gain
+            if speed or (plays and self._is_held_by_nothing(numbers, name, {**begun, name: at})):
+                found[name] = (at, speed / gain)
         return found
+
+    def _is_held_by_nothing(
+        self, numbers: Numbers, name: str, angles: Mapping[str, float]
+    ) -> bool:
+        """Return whether a pulley lies within the play of all that it hangs on."""
+        one = self._instrument
+        links = numbers.loops_on(one.index(name))
+        pose = np.array([angles.get(p.name, 0.0) for p in one.pulleys])
+        stretched = np.abs(numbers['radius'][links] @ pose)
+        return bool(links) and bool(np.all(stretched < 0.5 * numbers['play'][links]))
 
     def _read(self, numbers: Numbers) -> Iterator[tuple[str, Measured, float, float]]:
         """Yield inner pulleys that have a sensor, what it read, and its offset [rad] and gain."""
@@ -110,10 +113,9 @@ class Beginning:
 
     def _swinging(self, measured: Measured) -> tuple[float, float] | None:
         """Return what a sensor reads at first, and its rate; None where it came from rest."""
-        first = self._first
         if not (self._rests or self._under_way):
             return None
-        known = first & np.isfinite(measured.value)
+        known = self._first & np.isfinite(measured.value)
         if np.count_nonzero(known) <= BENT:
             return None
         if not np.ptp(measured.value[known]) > FAR * measured.floor > 0.0:

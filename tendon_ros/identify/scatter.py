@@ -107,8 +107,8 @@ def _deviation(off: FloatArray) -> float:
 def _parts(off: FloatArray, speed: FloatArray, usual: float) -> tuple[float, float]:
     """Return the deviation that speed does not change, and that of the time of a reading [s]."""
     columns = np.stack([np.ones_like(speed), speed**2], axis=1)
-    power = np.full(len(off), usual**2)
     parts = np.array([usual**2, 0.0])
+    power = columns @ parts
     for _ in range(SETTLES):
         within = np.minimum(off**2, SLIP**2 * power)
         # a square scatters as much as it is
