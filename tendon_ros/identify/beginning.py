@@ -8,7 +8,8 @@ second, and friction would hold them where they never were.
 
 What lies within a play is held by nothing but friction: it begins where its own sensor reads it,
 and would swing for seconds about where a weight comes to rest in the end. So does what moves where
-a recording begins while motors move, or swings while they rest: as fast as its sensor reads it.
+a recording begins while motors move, or swings farther than they take it along: as fast as its
+sensor reads it.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ FAINT = 1e-6
 #: [s] that tell how fast something swings, and errors of its sensor that it moves by in these
 SWING, FAR = 0.06, 10.0
 BENT = 3  # degree of what a swing looks like for so long
+ALONG = 2.0  # times as far as motors take it along that something goes at most, if it was at rest
 SUDDEN = 0.7  # part of the speed that a motor has soon after, with which no motion begins
 
 
@@ -83,7 +85,7 @@ class Beginning:
         found = {}
         for name, sensor, offset, gain in self._read(numbers):
             first = float(sensor.value[np.isfinite(sensor.value)][0])
-            angle, speed = self._swinging(sensor) or (first, 0.0)
+            angle, speed = self._swinging(name, sensor) or (first, 0.0)
             at = (angle - offset) / gain
             if speed or (plays and self._is_held_by_nothing(numbers, name, {**begun, name: at})):
                 found[name] = (at, speed / gain)
@@ -111,14 +113,16 @@ class Beginning:
             if inner and s.channel in measured:
                 yield s.of, measured[s.channel], float(offset), float(gain)
 
-    def _swinging(self, measured: Measured) -> tuple[float, float] | None:
+    def _swinging(self, name: str, measured: Measured) -> tuple[float, float] | None:
         """Return what a sensor reads at first, and its rate; None where it came from rest."""
-        if not (self._rests or self._under_way):
-            return None
         known = self._first & np.isfinite(measured.value)
-        if np.count_nonzero(known) <= BENT:
+        tells = self._segment.prescribed and measured.floor > 0.0
+        if not tells or np.count_nonzero(known) <= BENT:
             return None
-        if not np.ptp(measured.value[known]) > FAR * measured.floor > 0.0:
+        farthest = FAR * measured.floor
+        if not self._under_way:
+            farthest += ALONG * self._taken[name]
+        if not np.ptp(measured.value[known]) > farthest:
             return None
         time = self._segment.time
         *_, rate, angle = np.polyfit(time[known] - time[0], measured.value[known], BENT)
@@ -131,10 +135,11 @@ class Beginning:
         return first
 
     @cached_property
-    def _rests(self) -> bool:
-        """Whether all motors rest where the recording begins."""
-        still = self._segment.still
-        return bool(still) and all(row[self._first].all() for row in still)
+    def _taken(self) -> Mapping[str, float]:
+        """How far motors take others along while it begins [rad], by pulley."""
+        rows = self._segment.motion.value[: len(self._segment.prescribed)]
+        far = np.abs(self._following) @ np.ptp(rows[:, self._first], axis=1)
+        return dict(zip(self._segment.pose, far.tolist(), strict=True))
 
     @cached_property
     def _under_way(self) -> bool:

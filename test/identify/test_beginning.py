@@ -152,12 +152,13 @@ def test_a_recording_that_begins_at_rest_begins_there(softly):
     assert Beginning(rig, segment).loose(Numbers(rig), segment.motion) == {}
 
 
-def test_what_still_swings_where_motors_rest_begins_as_it_is_read(softly):
+@pytest.mark.parametrize('creep', [0.0, 0.02])
+def test_what_swings_farther_than_motors_take_it_begins_as_it_is_read(softly, creep):
     rig, run = softly
     held = run['actuator/pulley_rotor/position']
     arm = run['pulley/pulley_arm/position']
     swing = 0.03 * np.cos(9.0 * arm.time + 0.7)
-    still = run.with_channels([replace(held, value=0.0 * held.value), replace(arm, value=swing)])
+    still = run.with_channels([replace(held, value=creep * held.time), replace(arm, value=swing)])
     [segment] = prepared([still], rig).problem.rollouts.segments
     begun = Beginning(rig, segment).loose(Numbers(rig), segment.motion)
     at = segment.start + segment.time[0]
