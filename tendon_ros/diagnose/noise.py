@@ -86,12 +86,19 @@ class Noise:
             ),
         )
 
-    def given(self, segments: Sequence[Segment], predicted: Sequence[FloatArray]) -> list[Segment]:
+    def given(
+        self,
+        segments: Sequence[Segment],
+        predicted: Sequence[FloatArray],
+        *,
+        repeated: bool = True,
+    ) -> list[Segment]:
         """
         Return recordings with their noise: what is heard, of counts, and does not repeat itself.
 
         :param segments: the recordings.
         :param predicted: of each the channels as a model has them, shape (channels, bins).
+        :param repeated: whether what does not repeat itself counts.
         :return: the same with the noise beside that model.
         """
         left = [
@@ -99,7 +106,10 @@ class Noise:
             for segment, rows in zip(segments, predicted, strict=True)
         ]
         found = []
-        by_recording = (self.counts, self.bins, unrepeated(segments, left), self.resting)
+        again = [[0.0] * len(s.measured) for s in segments]
+        if repeated:
+            again = unrepeated(segments, left)
+        by_recording = (self.counts, self.bins, again, self.resting)
         for segment, rows, by_counts, by_bins, apart, resting in zip(
             segments, left, *by_recording, strict=True
         ):

@@ -71,6 +71,28 @@ class Prepared:
         ]
         return _problems(rollouts.like(segments), noise, self.shift, self.looser, self.likely)
 
+    def unrepeated(self, model: Model) -> Prepared:
+        """
+        Return the same where what differs when a motion is repeated is no noise.
+
+        :param model: what is believed.
+        :return: the problems with the noise beside it; these where no motion is repeated.
+        """
+        rollouts = self.whole.rollouts
+        predicted = rollouts.predicted(self.whole.uses(model))
+        every, within = (
+            self.noise.given(rollouts.segments, predicted, repeated=repeated)
+            for repeated in (True, False)
+        )
+        if all(
+            np.array_equal(a.noise, b.noise)
+            for one, other in zip(every, within, strict=True)
+            for a, b in zip(one.measured, other.measured, strict=True)
+        ):
+            return self
+        again = rollouts.like(within)
+        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+
     def read_again(self) -> Prepared:
         """Return the same had the motors been read once more, with other errors as large."""
         rollouts = self.whole.rollouts

@@ -14,6 +14,7 @@ import time
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose import gather, telling
 from tendon_ros.diagnose.alike import leaning
+from tendon_ros.diagnose.apart import apart_words, disagreement
 from tendon_ros.diagnose.asking import signed
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
@@ -157,6 +158,7 @@ def diagnose(
         ahead = next_experiments(rig, names, problem, found, held, jobs, patience, report)
     others = [*gather.alternatives(problem, found, held), *gather.read_right(heard, final)]
     moved = gather.moved(heard.problem, final, others)
+    differs = disagreement(heard, final, asked, beyond)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -186,7 +188,8 @@ def diagnose(
             *lost_words(heard, final.model),
             *brief_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
-            *(ended_words(moved) if beyond >= NAMED else []),
+            *([apart_words(differs)] if differs else []),
+            *(ended_words(moved) if beyond >= NAMED and not differs else []),
             *(loud_words(heard) if settled else []),
         ),
         left_out=(

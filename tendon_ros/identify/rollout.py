@@ -154,17 +154,17 @@ class Rollouts:
                 found.append(np.zeros((len(segment.measured), len(segment.time))))
         return tuple(found)
 
-    def each(self, work: Callable[[int], FloatArray], numbers: Sequence[int]) -> list[FloatArray]:
+    def each[A, B](self, work: Callable[[A], B], items: Sequence[A]) -> list[B]:
         """
-        Return what a function of predictions gives for each of several numbers.
+        Return what a function of predictions gives for each of several items.
 
         :param work: the function; it asks for nothing here itself.
-        :param numbers: what to call it with.
+        :param items: what to call it with.
         :return: in their order; the kernel leaves the interpreter free for other threads.
         """
-        if self._pool is None or len(numbers) < 2:
-            return [work(n) for n in numbers]
-        return list(self._pool.map(work, numbers))
+        if self._pool is None or len(items) < 2:
+            return [work(item) for item in items]
+        return list(self._pool.map(work, items))
 
     def rest(self) -> dict[str, float]:
         """
