@@ -22,7 +22,8 @@ class Parameter:
     ``rest``; ``slack`` (of a preload: also where it is so small that a cable loosens);
     ``shape``: a shape in spite of its neutral value; or ``guess``: fitted only where
     an instrument file says that it is a guess. ``of_reading``: it is in the unit in which the
-    sensor reads at whose place the effect acts; ``unit`` is that of most.
+    sensor reads at whose place the effect acts; ``unit`` is that of most. ``sensors``: the only
+    kinds of sensor at which a fit looks for it, if not all.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Parameter:
         'guess',
     ] = ''
     of_reading: bool = False
+    sensors: tuple[str, ...] = ()
 
     @property
     def shapes_only(self) -> bool:

@@ -16,9 +16,14 @@ from tendon_ros.diagnose.asking import lost, signless
 from tendon_ros.diagnose.everywhere import everywhere
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.steps import Report
+from tendon_ros.effects.sensor_delay import LONGEST
 from tendon_ros.identify.afar import kinds_of, swings
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.tied import tied
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.tied import RUBS, tied
+
+#: [s] by which a filter may make a speed late
+FILTERED = (2e-3, LONGEST)
 
 
 def leaning(
@@ -28,8 +33,8 @@ def leaning(
     Return a problem whose guesses lean towards one factor for all of a kind.
 
     :param ready: the problem.
-    :param candidates: all that may be named: all that usually rubs is there, and a sensor that may
-        have lost its sign may have.
+    :param candidates: all that may be named: all that usually rubs is there, a sensor that may
+        have lost its sign may have, and a speed may be filtered.
     :param report: called with what is being done and the part that is done.
     :return: the same where motion drives the model, or nothing is guessed.
     """
@@ -38,6 +43,25 @@ def leaning(
         return ready
     report('looking over what is guessed', 0.0)
     known = [problem.empty, *(lost(problem.empty, c) for c in signless(problem, candidates))]
-    begun = [m for model in known for m in tied(problem, partial(everywhere, candidates, model))]
+    filters = [c for c in candidates if c.opened]
+    begun: list[Model] = []
+    for model in known:
+        begun += tied(problem, partial(_usual, candidates, model))
+        for late in filters:
+            begun += tied(problem, partial(_filtered, candidates, model, late), (RUBS, FILTERED))
     best = min(begun, key=problem.cost, default=None)
     return ready if best is None else ready.leaning(best.moved.tolist())
+
+
+def _usual(candidates: Sequence[Candidate], model: Model, sizes: Sequence[float]) -> Model:
+    """Return a model with a part of all that usually rubs."""
+    [part] = sizes
+    return everywhere(candidates, model, part)
+
+
+def _filtered(
+    candidates: Sequence[Candidate], model: Model, late: Candidate, sizes: Sequence[float]
+) -> Model:
+    """Return the same with a speed that is filtered by a time [s]."""
+    part, time = sizes
+    return _usual(candidates, model.joined(late, {'time': time, 'filtered': 1.0}), [part])

@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 #: and still be the one
 TELLS, ALIKE = 0.6, 0.05
 #: effects that a closer look is taken at; recordings that it is taken at most with
-CLOSER, MOST = 3, 12
+CLOSER, MOST = 6, 12
 FARTHEST = 30.0  # typical sizes that an effect may differ by
 REPEATS = 0.5  # noise power from which on what differs between repetitions is looked into
 DIFFERS = 0.5  # part of what one size for all recordings leaves that other sizes leave at most

@@ -22,7 +22,7 @@ from tendon_ros.diagnose.intervals import parameter_intervals
 from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.prepare import Prepared, prepared
 from tendon_ros.diagnose.result import ChannelGap
-from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.candidate import Candidate, opened
 from tendon_ros.identify.driving import as_recorded, said_of_torque
 from tendon_ros.identify.explanation import BENT, BRISTLES, is_bristle, Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -161,7 +161,12 @@ def _start(
     """Return the model that the file is."""
     model = problem.empty
     for use in effects:
-        candidate = Candidate(use.effect, use.place, magnitude=large[use.place])
+        candidate = Candidate(
+            use.effect,
+            use.place,
+            magnitude=large[use.place],
+            opened=opened(problem.rollouts.instrument, use.effect, use.place),
+        )
         neutral = {p.name: p.neutral for p in candidate.parameters}
         model = model.joined(candidate, {**neutral, **use.parameters})
     known = {

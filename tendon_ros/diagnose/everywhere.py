@@ -80,7 +80,10 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     def all_of(part: float) -> Model:
         return everywhere(steps.candidates, before, part)
 
-    begun = tied(problem, all_of)[:FOLLOWED] if swings(problem) else list(map(all_of, BEGINNINGS))
+    if swings(problem):
+        begun = tied(problem, lambda sizes: all_of(*sizes))[:FOLLOWED]
+    else:
+        begun = list(map(all_of, BEGINNINGS))
     # the way is long, and rollouts with all of it are slow
     rougher = problem.rougher()
     rough = steps.pool.map(lambda m: rougher.fitted(m, rounds=FAR, accuracy=1e-2), begun)

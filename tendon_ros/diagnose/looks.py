@@ -30,6 +30,7 @@ from tendon_ros.diagnose.worth import (
     LEAST_IN_ONE,
     worthwhile,
 )
+from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 
@@ -79,6 +80,7 @@ class Looks:
         for rule in (
             self._weighed,
             self._without_sign,
+            self._back_with_guesses,
             self._without_events,
             self._heard_again,
             self._otherwise_held_out,
@@ -144,6 +146,25 @@ class Looks:
                 other = self._look(begun.model)
                 if other.final.cost < GAINED * self.found.final.cost:
                     self.found = other
+
+    def _back_with_guesses(self) -> None:
+        """
+        Begin with what was found and guesses where they began.
+
+        On the way to it they may have gone where they did best without it.
+        """
+        problem, final = self.ready.problem, self.found.final
+        if not final.model.causes or self._patience.over or not swings(problem):
+            return
+        model = problem.begun
+        for k, cause in enumerate(final.model.causes):
+            model = model.joined(cause, final.model.values(k))
+        begun = problem.fitted(model)
+        if begun.cost < GAINED * final.cost:
+            self._again('guesses went astray on the way to what was found')
+            other = self._look(begun.model)
+            if other.final.cost < GAINED * final.cost:
+                self.found = other
 
     def _without_events(self) -> None:
         """

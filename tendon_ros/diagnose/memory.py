@@ -112,7 +112,8 @@ class Memory:
 def _row(model: Model) -> dict[str, Any]:
     return {
         'causes': [
-            [c.effect, c.place, c.only, c.given, c.magnitude, c.stated] for c in model.causes
+            [c.effect, c.place, c.only, c.given, c.magnitude, c.stated, c.least, c.opened]
+            for c in model.causes
         ],
         'z': [list(row) for row in model.z],
         'bristle': [[*key, z] for key, z in model.bristle.items()],
@@ -138,6 +139,9 @@ def _candidate(
     given: Sequence[Sequence[Any]],
     magnitude: Sequence[float],
     stated: bool,
+    least: float,
+    opened: Sequence[str],
 ) -> Candidate:
     known = tuple((str(n), float(v)) for n, v in given)
-    return Candidate(effect, place, only, known, Magnitude(*map(float, magnitude)), stated)
+    large = Magnitude(*map(float, magnitude))
+    return Candidate(effect, place, only, known, large, stated, float(least), tuple(opened))

@@ -28,7 +28,8 @@ class Candidate:
     ``given``: what the instrument file says of this effect at this place. The candidate then
     stands instead of it: that the file is wrong about the effect. ``magnitude``: how large the
     forces of the place are. ``stated``: the file says how well it knows what it gives.
-    ``least``: below which a size changes nothing there.
+    ``least``: below which a size changes nothing there. ``opened``: parameters that are fitted at
+    few places, of which this is one.
     """
 
     effect: str
@@ -38,13 +39,18 @@ class Candidate:
     magnitude: Magnitude = TYPICAL
     stated: bool = False
     least: float = -math.inf
+    opened: tuple[str, ...] = ()
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
         """The effect's parameters, seen from what is given, but for what only a guess opens."""
         known = dict(self.given)
         effect = find(self.effect)
-        own = [self.magnitude.sized(p) for p in effect.parameters if p.search != 'guess']
+        own = [
+            self.magnitude.sized(p)
+            for p in effect.parameters
+            if p.search != 'guess' and (not p.sensors or p.name in self.opened)
+        ]
         own = [p if p.is_shape else replace(p, low=max(p.low, self.least)) for p in own]
         if not self.given_size:
             return tuple(own)  # what has no size has no shape either
@@ -82,12 +88,13 @@ class Candidate:
         :return: of this one's; a shape that the file gives stays.
         """
         known = dict(self.given)
+        its = {p.name: p for p in other.parameters}
         found = {}
-        for p, q in zip(self.parameters, other.parameters, strict=True):
+        for p in self.parameters:
             if p.is_shape:
-                found[p.name] = known.get(p.name, values[p.name])
+                found[p.name] = known.get(p.name, values.get(p.name, p.typical))
             else:
-                changed = values[p.name] - q.neutral
+                changed = values[p.name] - its[p.name].neutral
                 if back and p.neutral == 0.0 and p.low < 0.0:
                     changed = -changed
                 found[p.name] = min(max(changed + p.neutral, p.low), p.high)
@@ -195,7 +202,8 @@ def everyone(
                 continue
             if effect.id in withheld or f'{effect.id}@{place}' in withheld:
                 continue
-            one = Candidate(effect.id, place, magnitude=large[place])
+            few = opened(instrument, effect.id, place)
+            one = Candidate(effect.id, place, magnitude=large[place], opened=few)
             given = own.get((effect.id, place))
             if given is not None and not one.instants:
                 names = [f'{place}.{effect.id}.{name}' for name in given]
@@ -205,6 +213,22 @@ def everyone(
                 one = replace(one, least=-instrument.pulleys[index].damping)
             found.append(one)
     return tuple(found)
+
+
+def opened(instrument: Instrument, effect: str, place: str) -> tuple[str, ...]:
+    """
+    Return the parameters of an effect that are fitted at a place, and not wherever it acts.
+
+    :param instrument: the network.
+    :param effect: the effect's id.
+    :param place: a place where it can act.
+    :return: their names; none for most.
+    """
+    kind, index = place_index(instrument, place)
+    if kind != 'sensor':
+        return ()
+    read = instrument.sensors[index].kind
+    return tuple(p.name for p in find(effect).parameters if read in p.sensors)
 
 
 def check_withheld(instrument: Instrument, withheld: Sequence[str]) -> None:

@@ -265,7 +265,11 @@ def _sooner(
     late = dict.fromkeys(names, -time)
     for use in effects:
         if use.effect == 'sensor_delay' and use.place in late:
-            late[use.place] += use.parameters['time']
+            age, filtered = (use.parameters.get(name, 0.0) for name in ('time', 'filtered'))
+            late[use.place] += (1.0 - filtered) * age
+            if filtered > 0.0:  # a filter makes late whatever drives
+                smooth = {'time': filtered * age, 'filtered': 1.0}
+                yield EffectUse('sensor_delay', use.place, smooth)
         else:
             yield use
     for name, rest in late.items():

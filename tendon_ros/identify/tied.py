@@ -4,12 +4,13 @@ Where fits begin if torque drives a body of which hardly anything is known: what
 Friction, inertia, damping, stiffness and torque constant of a body that a torque swings have to be
 right together, or nothing fits at all; each on its own ends in a valley where one motor is heavy
 and its twin is light. So all guesses of a kind move by one factor first, and all that rubs by
-another: a handful of unknowns, which can be looked over and then fitted from the best places.
+another, and how late a filter makes what is read by a third: a handful of unknowns, which can be
+looked over and then fitted from the best places.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,8 +24,10 @@ from tendon_ros.identify.fit import Problem
 
 FloatArray = NDArray[np.float64]
 
+Ends = tuple[float, float]
+
 #: parts of what is typical that rubs: from hardly any to all of it
-LEAST, MOST = 3e-3, 1.0
+RUBS: Ends = (3e-3, 1.0)
 #: places that are tried, and from which fits go on
 TRIED, FITTED = 256, 8
 #: rounds of such a fit, and its step for derivatives, relative
@@ -33,24 +36,28 @@ ROUNDS, STEP = 15, 0.02
 OUTLYING = 200.0
 
 
-def tied(problem: Problem, of_size: Callable[[float], Model]) -> list[Model]:
+def tied(
+    problem: Problem, of_sizes: Callable[[Sequence[float]], Model], ends: Sequence[Ends] = (RUBS,)
+) -> list[Model]:
     """
     Return where fits of guesses and of all that rubs may begin.
 
     :param problem: the data.
-    :param of_size: returns the model with causes of a part of what is typical.
+    :param of_sizes: returns the model with causes of some sizes: of what rubs, the part of what is
+        typical.
+    :param ends: between which each of these sizes lies, all positive.
     :return: models with guesses of a kind moved alike, what leaves least first, what they cost
         counted; those that cannot be computed are left out.
     """
     names = kinds_of(problem)
     kinds = sorted(set(names.values()))
-    low = np.array([*[-np.log(FAR)] * len(kinds), np.log(LEAST)])
-    high = np.array([*[np.log(FAR)] * len(kinds), np.log(MOST)])
+    low = np.array([*[-np.log(FAR)] * len(kinds), *(np.log(least) for least, _ in ends)])
+    high = np.array([*[np.log(FAR)] * len(kinds), *(np.log(most) for _, most in ends)])
     points = qmc.scale(qmc.Halton(len(low), scramble=False).random(TRIED), low, high)
 
     def model(x: FloatArray) -> Model:
         factors = dict(zip(kinds, np.exp(x).tolist(), strict=False))
-        begun = of_size(float(np.exp(x[-1])))
+        begun = of_sizes(np.exp(x[len(kinds) :]).tolist())
         places = begun.moved.copy()
         for n, kind in names.items():
             places[n] = placed(problem.tolerances[n].axis, factors[kind])

@@ -206,8 +206,10 @@ class Layout:
         for name, there, own in self._moving:
             m[there] = numbers[name].ravel()[own]
         _put(m, at['LASH'], 0.5 * numbers['lash'][list(at.order)])
-        late = numbers['sensor_delay']
-        d[at['REMEMBERS']] = int((late > 0.0).any())
+        late, lag = numbers['sensor_delay'], numbers['sensor_lag'] / one.control_period
+        d[at['REMEMBERS']] = int((late > 0.0).any() or (lag > 0.0).any())
+        _put(m, at['SENSOR_LAG'], lag)
+        _put(m, at['SENSOR_KEPT'], np.exp(-1.0 / np.maximum(lag, 1e-3)))
         if (late > (RING - 2) * one.control_period).any():
             raise EffectError(
                 f'{one.name}: a sensor is delayed by more than {RING - 2} controller periods '

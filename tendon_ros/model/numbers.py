@@ -52,6 +52,7 @@ class Numbers:
             'sensor_gain': np.ones(len(one.sensors)),
             'sensor_offset': np.zeros(len(one.sensors)),
             'sensor_delay': np.zeros(len(one.sensors)),
+            'sensor_lag': np.zeros(len(one.sensors)),
             'sensor_rectified': np.zeros(len(one.sensors)),
         }
         for k, row in enumerate(one.loops):

@@ -95,6 +95,7 @@ class Runner:
         carried = np.zeros(at.length('c'))
         carried[at['STEP']] = 0.1 * self.instrument.control_period
         carried[at['LAST'] : at['LAST'] + at['U']] = 1e301
+        carried[at['SMOOTH'] : at['SMOOTH'] + len(self.instrument.sensors)] = 1e301
         carried[at['DRUM'] : at['DRUM'] + at['N']] = angles[: at['N']]
         modes = np.zeros(at.length('g'), dtype=np.int64)
         modes[at['MODE'] : at['MODE'] + at['N']] = 2

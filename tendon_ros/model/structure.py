@@ -34,7 +34,8 @@ PLACES: Mapping[str, Mapping[str, str]] = {
         'CONTACT_ARM': 'K', 'MOTOR_GAIN': 'U', 'MOTOR_BIAS': 'U', 'MOTOR_LIMIT': 'U',
         'MOTOR_KNEE': 'U', 'KP': 'U', 'KI': 'U', 'KD': 'U', 'AHEAD': 'U', 'LIMIT': 'U',
         'SENSOR_GAIN': 'Q', 'SENSOR_OFFSET': 'Q', 'SENSOR_DELAY': 'Q', 'SENSOR_RESOLUTION': 'Q',
-        'SENSOR_NOISE': 'Q', 'PERIOD': '1', 'TOLERANCE': '1', 'STILL': '1',
+        'SENSOR_LAG': 'Q', 'SENSOR_KEPT': 'Q', 'SENSOR_NOISE': 'Q', 'PERIOD': '1',
+        'TOLERANCE': '1', 'STILL': '1',
     },
     'd': {
         'DRIVE': 'N', 'MOTION': 'N', 'PUSH': 'N', 'REFERENCE': 'U', 'ENCODER': 'U',
@@ -68,7 +69,7 @@ PLACES: Mapping[str, Mapping[str, str]] = {
     'c': {
         'CLOCK': '1', 'STEP': '1', 'TICK': '1', 'COMMAND': 'U', 'SUM': 'U', 'LAST': 'U',
         'READING': 'Q', 'DRAWN': '1', 'ROW': '1', 'ROOM': '1', 'NOISY': '1', 'DRUM': 'N',
-        'PAST': 'Q*RING',
+        'PAST': 'Q*RING', 'SMOOTH': 'Q', 'BEFORE': 'Q',
     },
     'g': {'MODE': 'N', 'TOUCH': 'K', 'COUNT': '3'},
 }  # fmt: skip

@@ -7,7 +7,9 @@ import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.diagnose.memory import Memory
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.magnitude import Magnitude
 from tendon_ros.model.instrument_file import load_instrument
 
 
@@ -108,6 +110,19 @@ def test_what_channels_weigh_by_is_remembered(tmp_path, body, run):
     later = Memory(path, [run], body)
     assert len(later.models()) == 1
     assert later.weighed() is not None
+
+
+def test_causes_come_back_as_they_were(tmp_path, body, run):
+    causes = (
+        Candidate('viscous_friction', 'pulley_body', stated=True, least=-0.02),
+        Candidate('sensor_delay', 'speed_body', opened=('filtered',)),
+        Candidate('cable_slip', 'cable_a', only='free', magnitude=Magnitude(2.0, 3.0, 4.0)),
+    )
+    model = Model(causes, ((1.0,), (2.0, 0.5), (3.0, 4.0)), {}, np.array([0.5]), ('pulley_body',))
+    path = tmp_path / 'unfinished.json'
+    Memory(path, [run], body).keep([model])
+    [again] = Memory(path, [run], body).models()
+    assert (again.causes, again.z, again.rubs) == (causes, model.z, model.rubs)
 
 
 def test_forgetting_twice_is_fine(interrupted, body, run):

@@ -16,7 +16,7 @@ OWN = {
     'cable': {'pretension', 'scale', 'hardening', 'loop_damping', 'play'},
     'coupling': {'scale', 'hardening', 'loop_damping', 'play'},
     'motor': {'motor_gain', 'motor_bias', 'motor_limit', 'motor_knee', 'play'},
-    'sensor': {'sensor_gain', 'sensor_offset', 'sensor_delay', 'sensor_rectified'},
+    'sensor': {'sensor_gain', 'sensor_offset', 'sensor_delay', 'sensor_lag', 'sensor_rectified'},
     'contact': {'contact_stiffness', 'contact_damping', 'contact_position'},
 }
 
@@ -46,6 +46,7 @@ class Numbers:
             'sensor_gain': np.array([1.0, 1.0, 2.0]),
             'sensor_offset': np.array([0.0, 0.1, 0.0]),
             'sensor_delay': np.array([0.0, 0.0, 1e-3]),
+            'sensor_lag': np.array([0.0, 0.0, 2e-3]),
             'sensor_rectified': np.array([0.0, 0.0, 0.0]),
             'contact_stiffness': np.array([2e5, 1e5]),
             'contact_damping': np.array([50.0, 10.0]),
@@ -135,7 +136,20 @@ def test_only_the_place_is_changed(effect, kind):
         ('encoder_gain', 'sensor', 2, {'gain': 1.1}, {('sensor_gain', 2): 2.2}),
         ('load_cell_bias', 'sensor', 1, {'force': 0.3}, {('sensor_offset', 1): 0.4}),
         ('load_cell_gain', 'sensor', 2, {'gain': 0.5}, {('sensor_gain', 2): 1.0}),
-        ('sensor_delay', 'sensor', 2, {'time': 0.01}, {('sensor_delay', 2): 0.011}),
+        (
+            'sensor_delay',
+            'sensor',
+            2,
+            {'time': 0.01, 'filtered': 0.0},
+            {('sensor_delay', 2): 0.011},
+        ),
+        (
+            'sensor_delay',
+            'sensor',
+            2,
+            {'time': 0.01, 'filtered': 0.25},
+            {('sensor_delay', 2): 0.0085, ('sensor_lag', 2): 0.0045},
+        ),
         ('sensor_rectified', 'sensor', 0, {'rectified': 1.0}, {('sensor_rectified', 0): 1.0}),
         ('sensor_rectified', 'sensor', 0, {'rectified': 0.4}, {}),
         (

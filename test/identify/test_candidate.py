@@ -216,3 +216,12 @@ def test_an_effect_of_the_file_begins_from_as_much_more_as_was_found_elsewhere()
         'sliding': pytest.approx(0.06),
         'speed': 0.3,
     }
+
+
+def test_only_of_a_sensor_of_speed_a_filter_is_looked_for():
+    belt = load_instrument('belt_by_voltage')
+    late = {c.place: c for c in everyone(belt, [s.channel for s in belt.sensors])
+            if c.effect == 'sensor_delay'}  # fmt: skip
+    assert [p.name for p in late.pop('speed_roller').parameters] == ['time', 'filtered']
+    assert late
+    assert all([p.name for p in one.parameters] == ['time'] for one in late.values())

@@ -7,6 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.effects.sensor_delay import LONGEST
+from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.residuals import FEW
@@ -287,3 +288,26 @@ def test_a_first_look_takes_a_few_of_many_recordings(bench, sound_run):
     assert len(names) == FEW
     assert {'run0', f'run{FEW + 2}'} <= set(names)
     assert len(few.left(few.empty)) < 0.7 * len(problem.left(problem.empty))
+
+
+@pytest.mark.parametrize(
+    'late', [{'time': 0.02, 'filtered': 1.0}, {'time': 0.02, 'filtered': 0.4}]
+)
+def test_a_filtered_speed_is_told_from_a_late_one(tmp_path, measured_on, late):
+    (tmp_path / 'rig.yaml').write_text(
+        'base: single_body\nspeed_sensors: {body: {noise: 0.01 rad/s}}\n'
+    )
+    rig = load_instrument(tmp_path / 'rig.yaml')
+    lost = ('sensor_rectified', 'speed_body', {'rectified': 1.0})
+    far = (('duration', '6 s'), ('amplitude', '60 deg'))
+    run = measured_on(rig, lost, ('sensor_delay', 'speed_body', late), settings=far)
+    problem = prepared([run], rig).problem
+    asked = {c.effect: c for c in everyone(rig, list(run.channels)) if c.place == 'speed_body'}
+    model = problem.empty.joined(asked['sensor_rectified'], {'rectified': 1.0})
+    model = model.joined(asked['sensor_delay'], {'time': 0.005, 'filtered': 0.5})
+    found = problem.fitted(model)
+    assert found.model.values(1) == {
+        'time': pytest.approx(late['time'], rel=0.1),
+        'filtered': pytest.approx(late['filtered'], abs=0.1),
+    }
+    assert problem.structured(found.left) < 0.1

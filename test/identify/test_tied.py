@@ -6,7 +6,7 @@ import pytest
 from tendon_ros.diagnose.everywhere import everywhere
 from tendon_ros.identify.afar import afar, kinds_of
 from tendon_ros.identify.candidate import Candidate, everyone
-from tendon_ros.identify.tied import FITTED, LEAST, MOST, tied
+from tendon_ros.identify.tied import FITTED, RUBS, tied
 
 WITHOUT_SIGN = Candidate('sensor_rectified', 'speed_roller')
 
@@ -22,7 +22,7 @@ def of_size(far_off_belt):
 
 @pytest.fixture(scope='module')
 def begun(far_off_belt, of_size):
-    return tied(far_off_belt, of_size)
+    return tied(far_off_belt, lambda sizes: of_size(*sizes))
 
 
 def left(problem, model):
@@ -54,7 +54,7 @@ def test_guesses_of_a_kind_and_sizes_move_alike(far_off_belt, of_size, begun):
         ]
         assert len(parts) > 1
         assert np.ptp(parts) < 1e-9
-        assert LEAST <= parts[0] <= MOST
+        assert RUBS[0] <= parts[0] <= RUBS[1]
 
 
 def test_with_what_rubs_less_is_left_than_from_afar_without(far_off_belt, of_size, begun):

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import lsim
 
 from tendon_ros.base.errors import EffectError, SimulationError, TrajectoryError
-from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument import EffectUse, Sensor
 from tendon_ros.model.rows import joined
 from tendon_ros.model.simulation import Simulation
 
@@ -84,6 +85,21 @@ def test_a_delay_is_a_shift(bench_rig, press):
     truth = rows.angle[:, 1]
     between = 0.5 * (truth[8:-2] + truth[7:-3])
     assert rows.reading[10:, 1] == pytest.approx(between, abs=1e-12)
+
+
+@pytest.mark.parametrize('lag', [0.0002, 0.0025, 0.02])
+def test_a_filter_smooths_what_a_counter_counts(bench_rig, press, lag):
+    rig = bench_rig.five_pulleys()
+    speed = Sensor('speed_2', 'velocity', '2', 'pulley/pulley_2/velocity')
+    rig = replace(rig, sensors=(*rig.sensors, speed))
+    signless = EffectUse('sensor_rectified', 'speed_2', {'rectified': 1.0})
+    smooth = EffectUse('sensor_delay', 'speed_2', {'time': lag, 'filtered': 1.0})
+    rows = Simulation(replace(rig, effects=(signless, smooth))).run(press)
+    truth = np.abs(rows.velocity[:, rig.index('2')])
+    # as scipy has it, straight between ticks
+    _, expected, _ = lsim(([1.0], [lag, 1.0]), truth - truth[0], rows.time - rows.time[0])
+    assert np.ptp(truth) > 0.1
+    assert rows.reading[:, -1] == pytest.approx(expected + truth[0], abs=1e-9)
 
 
 def test_effects_change_while_it_runs(bench_rig, press):

@@ -7,12 +7,12 @@ from tendon_ros.model.kernel.forces import evaluate, given_by, prescribe
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
-    ACCELERATION, AHEAD, ARM, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER, F, FORCE,
-    Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
+    ACCELERATION, AHEAD, ARM, BEFORE, BUDGET, CLOCK, COMMAND, CONTACT_ARM, DRAWN, DRIVE, ENCODER,
+    F, FORCE, Floats, INERTIA, INPUT, Ints, K, KD, KI, KP, LAST, LIMIT, LOOP_PULLEY, M, MODE,
     MOTOR_BIAS, MOTOR_GAIN, MOTOR_PULLEY, N, NOISY, PAST, PERIOD, READING,
     READINGS, REFERENCE, REMEMBERS, RING, ROOM, ROW, SENSOR_DELAY, SENSOR_GAIN, SENSOR_INDEX,
-    SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION, SENSOR_SOURCE, SENSORS,
-    SIDE, START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
+    SENSOR_KEPT, SENSOR_LAG, SENSOR_NOISE, SENSOR_OFFSET, SENSOR_RECTIFIED, SENSOR_RESOLUTION,
+    SENSOR_SOURCE, SENSORS, SIDE, SMOOTH, START, SUM, TENSION, TICK, TORQUE, TRIAL, TURN, U, WIDTH,
 )  # fmt: skip
 
 SMALLEST = 1e-10  # times nearer than this are one [s]
@@ -37,6 +37,18 @@ def delayed(m: Floats, c: Floats, q: int, tick: int, truth: float) -> float:
         older = c[PAST + RING * q + (tick - back - 1) % RING]
         value += (late - back) * (older - value)
     return value
+
+
+def smoothed(m: Floats, c: Floats, q: int, value: float) -> float:
+    """Return what the low-pass filter of sensor q makes of a value that went straight there."""
+    if c[SMOOTH + q] > 1e300:  # the first tick has no past
+        c[SMOOTH + q] = value
+        c[BEFORE + q] = value
+    behind = m[SENSOR_LAG + q] * (value - c[BEFORE + q])
+    held = c[SMOOTH + q] - c[BEFORE + q] + behind
+    c[SMOOTH + q] = value - behind + held * m[SENSOR_KEPT + q]
+    c[BEFORE + q] = value
+    return c[SMOOTH + q]
 
 
 def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torques: int) -> None:
@@ -73,6 +85,8 @@ def sense(m: Floats, d: Ints, w: Floats, c: Floats, noise: Floats, at: int, torq
         value = m[SENSOR_GAIN + q] * value + m[SENSOR_OFFSET + q]
         if d[SENSOR_RECTIFIED + q] == 1:
             value = abs(value)
+        if m[SENSOR_LAG + q] > 0.0:
+            value = smoothed(m, c, q, value)
         if c[NOISY] > 0.0:
             value += m[SENSOR_NOISE + q] * noise[sensors * int(c[TICK] - c[DRAWN]) + q]
         if m[SENSOR_RESOLUTION + q] > 0.0:

@@ -79,6 +79,8 @@ PERIOD: int
 SENSOR_GAIN: int
 SENSOR_OFFSET: int
 SENSOR_DELAY: int
+SENSOR_LAG: int  # time constant of its low-pass filter, in periods
+SENSOR_KEPT: int  # part of what the filter held that is left a period later
 SENSOR_RESOLUTION: int
 SENSOR_NOISE: int
 TOLERANCE: int  # of an angle in one step [rad]
@@ -105,7 +107,7 @@ SENSORS: int  # how many there are
 SENSOR_SOURCE: int  # Q: what each reads (see tendon_ros.model.sensed)
 SENSOR_INDEX: int  # Q: pulley, motor, contact or entry of LOOP_PULLEY
 SENSOR_RECTIFIED: int  # Q
-REMEMBERS: int  # 1 where some sensor is delayed
+REMEMBERS: int  # 1 where some sensor is delayed or filtered
 ACTIVE: int  # number of auxiliary states in use
 STATE_LOOP: int  # STATES: the loop that a state belongs to, or -1
 STATE_PULLEY: int  # STATES: the pulley that a state belongs to, or -1
@@ -204,6 +206,8 @@ ROOM: int  # rows that there is room for
 NOISY: int  # 1 where the sensors' noise is on
 DRUM: int  # N: angle of what lies behind a pulley's play [rad]
 PAST: int  # Q * RING
+SMOOTH: int  # Q: what low-pass filters hold
+BEFORE: int  # Q: and what went into them last
 MODE: int  # N: -1, 1 sliding, 0 stuck, 2 without dry friction or with pre-sliding
 TOUCH: int  # K
 COUNT: int  # steps, rejected steps, events
