@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.bags.mapping import Mapping, Time
+from tendon_ros.bags.mapping import Mapping, Source, Time
 from tendon_ros.bags.stamps import END, IntArray, to_seconds, to_stamps
 from tendon_ros.bags.tables import read_tables, Table
 from tendon_ros.base.errors import listed, RecordingError
@@ -25,6 +25,8 @@ LONGEST = 250.0 * YEAR  # since its epoch: what whole nanoseconds can say
 JITTER = 0.5
 #: part of all that it reads by which a reading begins anew
 LEAP = 0.9
+#: bits of the signed registers that drives have
+REGISTERS = (16, 32)
 
 
 def run_keys(path: Path | str, mapping: Mapping) -> list[str]:
@@ -70,10 +72,13 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
     channels = {}
     for name, source in mapping.channels.items():
         raw = table.column(source.column, f'{path}: channels.{name}')
-        if source.bits is not None:
+        warnings += _misnamed(place, name)
+        if source.bits is None:
+            warnings += _signless(f'{place}: {name}', raw)
+        else:
             raw = np.where(raw >= 2.0 ** (source.bits - 1), raw - 2.0**source.bits, raw)
         value = source.sign * source.scale * factor(source.unit, unit_of(name)) * raw
-        value = value + source.offset
+        value = value + _offset(source, name)
         if source.time is None:
             rows, (time, usable) = every, common
         else:
@@ -107,6 +112,37 @@ def _recording(path: Path, table: Table, mapping: Mapping) -> Recording:
         metadata=_metadata(path, table, mapping),
         warnings=tuple(warnings),
     )
+
+
+def _offset(source: Source, name: str) -> float:
+    """Return what is added last, in the unit of the channel."""
+    given = source.offset
+    return given if isinstance(given, float) else parsed(given, unit_of(name))
+
+
+def _misnamed(place: str, name: str) -> list[str]:
+    """Say that no instrument has such a channel, as joints of instruments are pulleys."""
+    group, *joint, field = name.split('/')
+    if not joint or joint[0].startswith('pulley_'):
+        return []
+    return [
+        f'{place}: no instrument file has a channel {name}: joints are pulleys there, so that '
+        f'pulley {joint[0]} has {group}/pulley_{joint[0]}/{field}'
+    ]
+
+
+def _signless(place: str, raw: FloatArray) -> list[str]:
+    """Say that raw numbers leap through the whole range of a register that counts from zero."""
+    known = raw[np.isfinite(raw)]
+    most = float(known.max(initial=0.0))
+    bits = next((bits for bits in REGISTERS if LEAP * 2.0**bits < most < 2.0**bits), None)
+    leaps = float(np.abs(np.diff(known)).max(initial=0.0)) > LEAP * most
+    if bits is None or known.min(initial=0.0) < 0.0 or not leaps or np.any(known % 1.0):
+        return []
+    return [
+        f'{place} leaps between 0 and {most:.0f}, as a signed register of {bits} bits that was '
+        f'logged without its sign: if it is one, write `bits: {bits}`'
+    ]
 
 
 def _unturned(place: str, value: FloatArray, period: float) -> list[str]:

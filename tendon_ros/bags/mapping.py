@@ -13,7 +13,7 @@ The mapping file of ``tendon import``: how a foreign file becomes channels.
         unit: turn / (4096 * 35) # what one step of the raw number is
         scale: 1.0               # a further factor
         sign: -1                 # turns the direction
-        offset: 0.5              # added last, in the channel's SI unit
+        offset: -180 deg         # added last; a number alone is in the channel's SI unit
         bits: 16                 # where a signed register was logged without its sign
         wrap: 360 deg            # where the channel begins anew after so much, before scale
         time: {column: 9, unit: us}  # where the channel has stamps of its own
@@ -146,7 +146,7 @@ class Source(_Strict):
     unit: str
     scale: float = 1.0
     sign: Literal[1, -1] = 1
-    offset: float = 0.0
+    offset: float | str = 0.0
     bits: Annotated[int, Field(ge=2, le=64, strict=True)] | None = None
     wrap: Quantity | None = None
     time: Time | None = None
@@ -187,6 +187,11 @@ class Mapping(_Strict):
                 _checked(source.unit, unit_of(name))
             except (RecordingError, ValueError) as error:
                 raise ValueError(f'{name}: {error}') from error
+            try:
+                if isinstance(source.offset, str):
+                    parsed(source.offset, unit_of(name))
+            except ValueError as error:
+                raise ValueError(f'{name}.offset: {error}') from error
             try:
                 if source.wrap is not None and parsed(source.wrap, unit_of(name)) <= 0.0:
                     raise ValueError(f'{source.wrap!r} must be more than 0')

@@ -7,6 +7,7 @@ Screening looks for them where the rest stands without the cause, and may look i
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -19,11 +20,14 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen
+from tendon_ros.identify.segment import SETTLING
+from tendon_ros.identify.starting import between_recordings
 
 #: rounds and accuracy of fits: only careful ones tell whether there is more to an effect
 CAREFUL, BRIEF = (20, 1e-3), (6, 1e-2)
 #: parts of the size that first order says from which friction may begin
 LESS = (1.0, 0.3, 0.1, 0.03)
+ZERO = 'encoder_offset'
 BEGUN_ANEW = 3  # rivals halfway there that are begun beside what the others are with the cause
 
 
@@ -88,6 +92,24 @@ class Begun:
             return candidate, tried[int(np.argmin(costs))]
 
         return self._instead(state, cause, list(self._steps.pool.map(begun, others)))
+
+    def homed_again(self, state: Fit, cause: Candidate) -> list[Rival]:
+        """
+        Return the fits of encoders' zeros, if a cause has been there since its recording began.
+
+        What slipped between two recordings may as well have been homed.
+
+        :param state: with the cause.
+        :param cause: which one.
+        :return: the fits.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        if not between_recordings(self._problem, cause) or any(
+            values[p.name] > SETTLING for p in cause.instants
+        ):
+            return []
+        zeros = [replace(c, only=cause.only) for c in self._steps.candidates if c.effect == ZERO]
+        return self._instead(state, cause, [(c, c.as_given) for c in zeros])
 
     def beside_the_others(
         self, state: Fit, cause: Candidate, without: Fit, rivals: Sequence[Rival]

@@ -186,6 +186,7 @@ class Challenge:
         begun = self._begun.wider(found.final, cause, proposals, brief=brief)
         if not brief:
             begun += self._begun.elsewhere(found.final, cause, among)
+            begun += self._begun.homed_again(found.final, cause)
         rivals = best_of(sorted([*begun, *rivals], key=judged_cost))
         # of a speed alone, one dry friction is as good as another: that is to be said
         if not brief or swings(self._problem):

@@ -14,7 +14,13 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, PlainValidator, ValidationInfo
 
 from tendon_ros.base.quantity import parsed
-from tendon_ros.model.tolerance import read_stated, read_tolerance, Stated
+from tendon_ros.model.tolerance import (
+    GUESSED,
+    read_stated,
+    read_tolerance,
+    Stated,
+    without_tolerance,
+)
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,8 @@ def quantity(unit: str | By, sign: str = '') -> BeforeValidator:
 
     def read(text: object, info: ValidationInfo) -> float:
         own = unit.told(info) if isinstance(unit, By) else unit
+        if isinstance(text, str) and (number := without_tolerance(text)) != text:
+            raise ValueError(f'{text!r}: no tolerance may stand here; write {number!r}')
         value = text if isinstance(text, float) else parsed(text, own)
         _check_sign(text, value, sign)
         return value
@@ -81,6 +89,15 @@ def _read_name(text: str) -> str:
     return text
 
 
+def _read_zero(text: str) -> str:
+    if text not in ('', GUESSED):
+        raise ValueError(
+            f'{text!r}: write {GUESSED!r} where it is another one in every recording, and leave '
+            'it out where it is known; what homing leaves is found as the effect encoder_offset'
+        )
+    return text
+
+
 def _read_count(text: object) -> int:
     number = str(text)
     if not number.isdecimal() or int(number) < 1:
@@ -111,6 +128,7 @@ def column(unit: str) -> BeforeValidator:
 _COLUMN_UNITS = {'m': 'mm', 'N': 'N'}
 
 Name = Annotated[str, AfterValidator(_read_name)]
+Zero = Annotated[str, AfterValidator(_read_zero)]
 Count = Annotated[int, BeforeValidator(_read_count)]
 Switch = Annotated[bool, Field(strict=False)]
 Radius = Annotated[float, quantity('m', 'not zero')]

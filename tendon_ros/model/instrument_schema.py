@@ -29,6 +29,7 @@ from tendon_ros.model.instrument_fields import (
     Sign,
     stated,
     Switch,
+    Zero,
 )
 from tendon_ros.model.tolerance import Stated
 
@@ -139,7 +140,7 @@ class EncoderSection(Section):
 class JointSensorSection(EncoderSection):
     """An angle sensor on a pulley without a motor; its zero may be another in every recording."""
 
-    zero: Literal['', 'guessed'] = ''
+    zero: Zero = ''
 
 
 class TorqueSensorSection(Section):

@@ -41,6 +41,12 @@ def read_stated(text: object, unit: str) -> Stated:
     """
     if not isinstance(text, str):
         return Stated(parsed(text, unit))
+    if text.strip() == GUESSED:
+        raise ValueError(
+            f'{text!r}: write the number that is {GUESSED} before it, in {unit}'
+            if unit != '1'
+            else f'{text!r}: write the number that is {GUESSED} before it'
+        )
     number, spread = _parts(text)
     *_, last = number.split() or ['']
     if spread is not None and last == GUESSED:
@@ -79,7 +85,10 @@ def read_tolerance(text: object) -> float:
         return math.inf
     sign = _SIGN.match(said)
     if sign is None or not said.endswith('%'):
-        raise ValueError(f"{said!r} is no tolerance; write '+- 3 %' or '{GUESSED}'")
+        raise ValueError(
+            f"{said!r} is no tolerance; write '+- 3 %' or '{GUESSED}', for the number itself "
+            "stands elsewhere (a loop's stiffness is the scale of its curve)"
+        )
     return _positive(said, parsed(said[sign.end() :].strip(), '1'))
 
 

@@ -22,7 +22,7 @@ MAPPING = {
     'runs': {'include': '[0-9]', 'header': 'hdr_{key}'},
     'time': {'column': 0, 'unit': 's'},
     'channels': {
-        'actuator/motor/position': {
+        'actuator/pulley_motor/position': {
             'column': 1,
             'unit': 'turn / 4096',
             'scale': 2.0,
@@ -67,7 +67,7 @@ def expected():
 def test_runs_of_an_npz(npz, tmp_path):
     one, two = imported(tmp_path, npz, MAPPING)
     assert (one.name, two.name) == ('1', '2')
-    position = one['actuator/motor/position']
+    position = one['actuator/pulley_motor/position']
     np.testing.assert_allclose(position.value, expected(), rtol=1e-14)
     np.testing.assert_array_equal(position.time, np.round(TIME, 9))
     np.testing.assert_allclose(one['load_cell/force'].value, COUNTS * 9.80665e-3, rtol=1e-14)
@@ -101,8 +101,8 @@ BY_NAME = {
     'time': {'column': 't', 'unit': 'ms'},
     'runs': None,
     'channels': {
-        'actuator/motor/position': {
-            **MAPPING['channels']['actuator/motor/position'],
+        'actuator/pulley_motor/position': {
+            **MAPPING['channels']['actuator/pulley_motor/position'],
             'column': 'motor',
         }
     },
@@ -124,8 +124,8 @@ def test_columns_by_name(tmp_path, kind):
         )
         path.write_text(f'# a comment\nt, motor\n{rows}\n')
     (run,) = imported(tmp_path, path, changed(format=kind, **BY_NAME))
-    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
-    np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].value, expected(), rtol=1e-14)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].time, TIME, atol=1e-12)
 
 
 def test_signals_that_are_shorter_than_something_else_are_told(tmp_path):
@@ -138,21 +138,21 @@ def test_runs_of_a_mat_file(tmp_path):
     scipy.io.savemat(tmp_path / 'x.mat', {'run1': np.stack([TIME, COUNTS, COUNTS], axis=1)})
     data = changed(format='mat', runs={'include': 'run*'})
     (run,) = imported(tmp_path, tmp_path / 'x.mat', data)
-    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].value, expected(), rtol=1e-14)
 
 
 def test_a_csv_without_names_and_a_rate(tmp_path):
     np.savetxt(tmp_path / 'x.csv', np.stack([COUNTS, COUNTS], axis=1), delimiter=',')
-    channel = {**MAPPING['channels']['actuator/motor/position'], 'column': 1}
+    channel = {**MAPPING['channels']['actuator/pulley_motor/position'], 'column': 1}
     data = changed(
         format='csv',
         runs=None,
         time={'rate': '1 kHz'},
-        channels={'actuator/motor/position': channel},
+        channels={'actuator/pulley_motor/position': channel},
         epoch='2020-01-01T00:00:00Z',
     )
     (run,) = imported(tmp_path, tmp_path / 'x.csv', data)
-    np.testing.assert_allclose(run['actuator/motor/position'].time, TIME, atol=1e-12)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].time, TIME, atol=1e-12)
     assert run.epoch_ns == 1_577_836_800 * 10**9
 
 
@@ -205,12 +205,12 @@ def test_bad_time_and_nan_are_left_out_and_told(tmp_path):
     np.savez(tmp_path / 'x.npz', **{'1': table})
     (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
     assert run['load_cell/force'].value.size == N - 3
-    assert run['actuator/motor/position'].value.size == N - 4
+    assert run['actuator/pulley_motor/position'].value.size == N - 4
     time, jitter, value = run.warnings
     assert '3 of 40 rows left out' in time
     assert 'first row 6 of the data' in time
     assert '4 of 36 intervals' in jitter
-    assert 'actuator/motor/position' in value
+    assert 'actuator/pulley_motor/position' in value
     assert 'first row 21 of the data' in value
 
 
@@ -266,19 +266,19 @@ def test_a_column_of_nan_is_unmeasured(tmp_path):
     table = np.stack([TIME, COUNTS, COUNTS * np.nan], axis=1)
     np.savez(tmp_path / 'x.npz', **{'1': table})
     (run,) = imported(tmp_path, tmp_path / 'x.npz', MAPPING)
-    assert set(run.channels) == {'actuator/motor/position'}
+    assert set(run.channels) == {'actuator/pulley_motor/position'}
     assert 'unmeasured' in run.warnings[0]
 
 
-POSITION = MAPPING['channels']['actuator/motor/position']
+POSITION = MAPPING['channels']['actuator/pulley_motor/position']
 
 
 def with_position(**fields):
-    return changed(channels={'actuator/motor/position': {**POSITION, **fields}})
+    return changed(channels={'actuator/pulley_motor/position': {**POSITION, **fields}})
 
 
 def with_effort(**fields):
-    return changed(channels={'actuator/motor/effort': {'column': 1, **fields}})
+    return changed(channels={'actuator/pulley_motor/effort': {'column': 1, **fields}})
 
 
 @pytest.mark.parametrize(
@@ -315,6 +315,7 @@ def with_effort(**fields):
         (with_position(scale=0), 'must not be 0'),
         (with_position(scale='fast'), 'scale'),
         (with_position(offset=float('nan')), 'offset'),
+        (with_position(offset='-180 N'), "actuator/pulley_motor/position.offset: '-180 N' is not"),
         (with_position(column=-1), 'column'),
         (with_position(column=None), 'column'),
         (with_position(factor=3), 'factor: unknown field; use bits, column, offset'),
@@ -375,7 +376,7 @@ def test_the_last_row_of_a_logger_that_was_stopped_is_left_out_and_told(tmp_path
     # names and cells after a blank, as some write them
     (tmp_path / 'x.csv').write_text(f'"t", "motor"\n{rows}\n40.')
     (run,) = imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
-    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].value, expected(), rtol=1e-14)
     [told] = run.warnings
     assert told.endswith('the last row, 42, is cut off after 1 of 2 cells; left out')
 
@@ -384,7 +385,7 @@ def test_python_objects_beside_the_signals_are_left_aside(tmp_path):
     objects = np.array([{'gain': 3.0}, None], dtype=object)
     np.savez(tmp_path / 'x.npz', t=TIME * 1e3, motor=COUNTS, settings=objects)
     (run,) = imported(tmp_path, tmp_path / 'x.npz', changed(**BY_NAME))
-    np.testing.assert_allclose(run['actuator/motor/position'].value, expected(), rtol=1e-14)
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].value, expected(), rtol=1e-14)
     table = np.stack([TIME, COUNTS, COUNTS], axis=1)
     np.savez(tmp_path / 'runs.npz', **{'1': table, '2': objects, 'hdr_1': objects})
     (one,) = imported(tmp_path, tmp_path / 'runs.npz', MAPPING, ['1'])
@@ -440,9 +441,9 @@ SERVO = {
     'format': 'csv',
     'time': {'column': 'ms', 'unit': 'ms'},
     'channels': {
-        'actuator/arm/position': {'column': 'deg', 'unit': 'deg'},
-        'actuator/arm/effort': {'column': 'load', 'unit': 'percent * 2.5 N m', 'sign': -1},
-        'pulley/belt/velocity': {
+        'actuator/pulley_arm/position': {'column': 'deg', 'unit': 'deg'},
+        'actuator/pulley_arm/effort': {'column': 'load', 'unit': 'percent * 2.5 N m', 'sign': -1},
+        'pulley/pulley_belt/velocity': {
             'column': 'rpm',
             'unit': 'rpm',
             'time': {'column': 'us', 'unit': 'us'},
@@ -461,11 +462,11 @@ def test_units_of_servos_and_stamps_of_its_own(tmp_path):
     )
     (tmp_path / 'x.csv').write_text(text)
     (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
-    position, effort = run['actuator/arm/position'], run['actuator/arm/effort']
+    position, effort = run['actuator/pulley_arm/position'], run['actuator/pulley_arm/effort']
     np.testing.assert_allclose(position.value, np.deg2rad([90, 91, 93]))
     np.testing.assert_allclose(position.time, [0.0, 0.02, 0.06])
     np.testing.assert_allclose(effort.value, [-0.25, 0.5, -0.75])
-    speed = run['pulley/belt/velocity']
+    speed = run['pulley/pulley_belt/velocity']
     np.testing.assert_allclose(speed.value, [2 * np.pi, 2 * np.pi])
     np.testing.assert_array_equal(speed.time, [0.013, 0.0335])
     back = read_recording(write_recording(run, tmp_path / 'bag'))
@@ -486,16 +487,16 @@ def test_other_delimiters(tmp_path, delimiter):
     text = '\n'.join(delimiter.join(row) for row in rows)
     (tmp_path / 'x.csv').write_text(text.replace('.', ',') if delimiter == ';' else text)
     (run,) = imported(tmp_path, tmp_path / 'x.csv', changed(format='csv', **BY_NAME))
-    np.testing.assert_allclose(run['actuator/motor/position'].time, [0.0, 0.0015])
+    np.testing.assert_allclose(run['actuator/pulley_motor/position'].time, [0.0, 0.0015])
 
 
 def test_a_sample_of_a_slow_channel_that_comes_late_is_told(tmp_path):
     text = 'ms,deg,load,us,rpm\n0,90,1,500,1\n20,91,1,400,2\n40,92,1,700,3\n'
     (tmp_path / 'x.csv').write_text(text)
     (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
-    assert run['pulley/belt/velocity'].value.size == 2
-    assert run['actuator/arm/position'].value.size == 3
-    assert any('pulley/belt/velocity: 1 of 3 rows left out' in w for w in run.warnings)
+    assert run['pulley/pulley_belt/velocity'].value.size == 2
+    assert run['actuator/pulley_arm/position'].value.size == 3
+    assert any('pulley/pulley_belt/velocity: 1 of 3 rows left out' in w for w in run.warnings)
 
 
 def test_rows_of_a_slow_channel_are_those_of_the_file(tmp_path):
@@ -504,7 +505,9 @@ def test_rows_of_a_slow_channel_are_those_of_the_file(tmp_path):
     text = '\n'.join(','.join(map(str, row)) for row in rows)
     (tmp_path / 'x.csv').write_text(f'ms,deg,load,us,rpm\n{text}\n')
     (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
-    stamps, values = (w for w in run.warnings if 'pulley/belt/velocity' in w and 'left out' in w)
+    stamps, values = (
+        w for w in run.warnings if 'pulley/pulley_belt/velocity' in w and 'left out' in w
+    )
     assert 'first row 32 of the data' in stamps
     assert 'first row 31 of the data' in values
 
@@ -522,5 +525,30 @@ def test_slow_and_fast_recordings(tmp_path, rate):
     )
     (run,) = imported(tmp_path, tmp_path / 'x.csv', SERVO)
     assert run.warnings == ()
-    np.testing.assert_allclose(run['actuator/arm/position'].value, np.sin(time), atol=1e-12)
-    np.testing.assert_allclose(run['pulley/belt/velocity'].time, time, atol=1e-9)
+    np.testing.assert_allclose(run['actuator/pulley_arm/position'].value, np.sin(time), atol=1e-12)
+    np.testing.assert_allclose(run['pulley/pulley_belt/velocity'].time, time, atol=1e-9)
+
+
+def test_an_offset_may_have_a_unit(tmp_path, npz):
+    [run] = imported(tmp_path, npz, with_position(offset='-180 deg'), ['1'])
+    assert run['actuator/pulley_motor/position'].value[0] == pytest.approx(-np.pi)
+
+
+@pytest.mark.parametrize(('bits', 'told'), [(None, True), (16, False)])
+def test_a_register_that_lost_its_sign_is_told(tmp_path, bits, told):
+    raw = np.where(np.sin(0.3 * np.arange(N)) < 0.0, 65400.0, 120.0)
+    path = tmp_path / 'runs.npz'
+    np.savez(path, **{'1': np.stack([TIME, raw, COUNTS], axis=1)})
+    [run] = imported(tmp_path, path, with_position(bits=bits))
+    assert any('if it is one, write `bits: 16`' in w for w in run.warnings) == told
+    # counts that pass zero do not leap
+    np.savez(path, **{'1': np.stack([TIME, np.linspace(0.0, 65000.0, N).round(), COUNTS], axis=1)})
+    [run] = imported(tmp_path, path, with_position(bits=None))
+    assert not run.warnings
+
+
+def test_a_joint_that_is_no_pulley_is_told(tmp_path, npz):
+    channels = {**MAPPING['channels'], 'pulley/link/position': {'column': 1, 'unit': 'deg'}}
+    [run] = imported(tmp_path, npz, changed(channels=channels), ['1'])
+    [told] = run.warnings
+    assert told.endswith('so that pulley link has pulley/pulley_link/position')

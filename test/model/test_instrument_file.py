@@ -179,6 +179,11 @@ def test_what_no_file_can_say_is_refused(tmp_path):
 FAULTS = [
     ('inertia: 1 g*cm^2', 'inertia: 1', "pulleys.02.inertia: '1' has no unit; write a quantity"),
     ('inertia: 1 g*cm^2', 'inertia: 1 g', "pulleys.02.inertia: '1 g' is not in kg*m^2"),
+    (
+        'route: {M: 30 mm',
+        'route: {M: 30 mm ± 1 mm',
+        "loops.m1.route.M: '30 mm ± 1 mm': no tolerance may stand here; write '30 mm'",
+    ),
     ('inertia: 1 g*cm^2', 'inertia: 0 g*cm^2', "pulleys.02.inertia: '0 g*cm^2' must be positive"),
     ('inertia: 1 g*cm^2', 'inertia: .nan', 'pulleys.02.inertia: '),
     ('inertia: 1 g*cm^2', 'inertia: [1]', 'pulleys.02.inertia: list'),

@@ -119,6 +119,12 @@ def test_a_variant_says_anew_how_well_its_numbers_are_known(file, tmp_path):
         ('0.04 kg*m^2 +- 3 %', '0 kg*m^2 guessed', 'pulleys.M.inertia: '),
         ('0 N*m*s/rad guessed', '0 N*m*s/rad ± 3 %', '0 has no relative tolerance'),
         ('stiffness: ± 2.5 %', 'stiffness: 3 N/mm', "loops.m1.stiffness: '3 N/mm' is no toleranc"),
+        (
+            'stiffness: ± 2.5 %',
+            'stiffness: 3 N/mm',
+            "a loop's stiffness is the scale of its curve",
+        ),
+        ('0.04 kg*m^2 +- 3 %', 'guessed', 'write the number that is guessed before it, in kg*m^2'),
         ('stiffness: ± 2.5 %', 'stiffness: ± 3', "write '+- 3 %' or 'guessed'"),
         ('torque_gain: guessed', 'torque_gain: 0.9', "motors.drive.torque_gain: '0.9' is no tol"),
         ('17 deg ± 2 deg', '17 deg ± 2 %', 'contacts.tip.position: '),
