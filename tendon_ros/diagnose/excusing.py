@@ -2,7 +2,8 @@
 Torque limits that excuse: nearly all torques pass them, and no motion tells what those were.
 
 A fit lowers a limit to have ever more excused, until it means nothing, or lets it set in so early
-that it bends all of a motor's torques. None comes in like that but where all others leave ten
+that it bends all of a motor's torques. So it does with one that just overcomes what rubs at the
+motor, which could do little but stand. None comes in like that but where all others leave ten
 times as much.
 """
 
@@ -18,9 +19,13 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.motor_gain import motor_gain
 from tendon_ros.identify.untold import guesses_torque
+from tendon_ros.model.effect_use import in_force
 
 #: part of what all others leave that an excuse may leave which comes in
 EXCUSED = 0.1
+COULOMB = 'coulomb_friction'
+#: times what rubs at its pulley that a motor which moves it gives at least
+RUBS = 1.2
 #: times what a motor usually gives to which a limit is raised that had sunk below
 ABOVE = 1.05
 
@@ -44,13 +49,28 @@ def excuses(problem: Problem, model: Model, k: int) -> bool:
     # how much a motor gives of what it reports is known, or is another guess
     motor = cause.place.removeprefix('motor_')
     known = not guesses_torque(problem.rollouts.instrument, motor)
-    return (known and is_wide(cause, values)) or values['limit'] < _usual(problem, model, cause)
+    return (known and is_wide(cause, values)) or values['limit'] < _least(problem, model, cause)
 
 
-def _usual(problem: Problem, model: Model, limit: Candidate) -> float:
-    """Return the torque that a motor usually gives, or less [N m]."""
+def _least(problem: Problem, model: Model, limit: Candidate) -> float:
+    """Return the torque that a motor gives at the least if any limit cuts it off [N m]."""
     motor = limit.place.removeprefix('motor_')
-    return problem.rollouts.usual(motor, motor_gain(problem, model, motor))
+    usual = problem.rollouts.usual(motor, motor_gain(problem, model, motor))
+    return max(usual, RUBS * _rubs(problem, model, motor))
+
+
+def _rubs(problem: Problem, model: Model, motor: str) -> float:
+    """Return the constant friction at the pulley of a motor [N m]."""
+    [pulley] = [m.pulley for m in problem.rollouts.instrument.motors if m.name == motor]
+    uses = problem.uses(model)[0]
+    own = in_force(problem.rollouts.instrument.effects, uses)
+    found = 0.0
+    for use in own:
+        effect = find(use.effect)
+        parts = ('torque',) if use.effect == COULOMB else effect.holds.get(COULOMB, ())
+        if use.place == f'pulley_{pulley}' and parts:
+            found += min(use.parameters[name] for name in parts)
+    return found
 
 
 def raised(problem: Problem, model: Model) -> Model:
@@ -65,7 +85,7 @@ def raised(problem: Problem, model: Model) -> Model:
     for cause in sorted(excused(problem, model)):
         limit = model.values(model.causes.index(cause))['limit']
         values = dict(find(cause.effect).typical) | {
-            'limit': max(limit, ABOVE * _usual(problem, model, cause))
+            'limit': max(limit, ABOVE * _least(problem, model, cause))
         }
         found = found.without(found.causes.index(cause)).joined(cause, values)
     return found

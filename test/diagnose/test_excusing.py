@@ -15,9 +15,12 @@ from tendon_ros.diagnose.first import FirstRound
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.motor_gain import motor_gain
+from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.screening import Screen
 from tendon_ros.identify.starting import Starting
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
 CUT = Candidate('torque_saturation', 'motor_axis')
@@ -146,3 +149,22 @@ def test_an_excuse_is_not_taken_where_few_are_asked(half_cut, values, comes):
     steps = Steps(problem, [CUT], 1, lambda *_: None)
     found = FirstRound(steps, start, usual, {})._from_the_file()
     assert (found is alone) is comes
+
+
+@pytest.mark.parametrize(('limit', 'stands'), [(0.45, True), (0.8, False)])
+@pytest.mark.parametrize('own', [False, True])
+def test_a_limit_that_just_overcomes_what_rubs_is_none(cut_at, limit, stands, own):
+    problem = cut_at(3.0)
+    rig = problem.rollouts.instrument
+    rubs = {'static': 0.2, 'sliding': 0.4, 'speed': 0.1}
+    model = problem.empty.joined(CUT, {'limit': limit, 'knee': 0.01})
+    if own:
+        friction = EffectUse('stribeck_friction', f'pulley_{rig.motors[0].pulley}', rubs)
+        rig = replace(rig, effects=(friction,))
+        segments = problem.rollouts.segments
+        problem = Problem(Rollouts(rig, segments), problem.tolerances, problem.masks)
+    else:
+        friction = Candidate('stribeck_friction', f'pulley_{rig.motors[0].pulley}')
+        model = model.joined(friction, rubs)
+    assert problem.rollouts.usual('axis', 1.0) < 0.4
+    assert excuses(problem, model, 0) is stands
