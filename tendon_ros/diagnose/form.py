@@ -152,8 +152,9 @@ def _form(problem: Problem, effect: str, place: str) -> float:
     return max(known.form, COUNTED) if known.dry and place in driven else known.form
 
 
-#: of each problem, the state that was asked about last, and what the file's effects may leave
-_OWN: WeakKeyDictionary[Problem, tuple[Fit, float]] = WeakKeyDictionary()
+#: of each problem, the state that was asked about last, and what the file's effects may leave:
+#: a sample, and each of the samples
+_OWN: WeakKeyDictionary[Problem, tuple[Fit, float, FloatArray]] = WeakKeyDictionary()
 
 
 def own_power(problem: Problem, start: Fit) -> float:
@@ -164,25 +165,42 @@ def own_power(problem: Problem, start: Fit) -> float:
     :param start: without any cause.
     :return: in noise power per sample.
     """
+    return _by_own(problem, start)[1]
+
+
+def own_profile(problem: Problem, start: Fit) -> FloatArray:
+    """
+    Return where and when the laws of the file's own effects may be wrong.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :return: noise power that each sample may keep for that, shape (samples,).
+    """
+    return _by_own(problem, start)[2]
+
+
+def _by_own(problem: Problem, start: Fit) -> tuple[Fit, float, FloatArray]:
     known = _OWN.get(problem)
     if known is None or known[0] is not start:
-        known = _OWN[problem] = start, _left_by_own(problem, start)
-    return known[1]
+        known = _OWN[problem] = start, *_left_by_own(problem, start)
+    return known
 
 
-def _left_by_own(problem: Problem, start: Fit) -> float:
+def _left_by_own(problem: Problem, start: Fit) -> tuple[float, FloatArray]:
     instrument = problem.rollouts.instrument
     uses = problem.uses(start.model)
     measured = problem.rollouts.measured
-    found = 0.0
+    found, profile = 0.0, np.zeros(len(start.left))
     for own in instrument.effects:
         gone = EffectUse(own.effect, own.place, find(own.effect).neutral, instead=True)
         predicted = problem.rollouts.predicted([[*row, gone] for row in uses])
         left = problem.flat([m - p for m, p in zip(measured, predicted, strict=True)])
         grown = float(left @ left - start.left @ start.left) / max(len(left), 1)
         if np.isfinite(grown):
-            found += max(0.0, grown) * _form(problem, own.effect, own.place) ** 2
-    return found
+            part = _form(problem, own.effect, own.place) ** 2
+            found += max(0.0, grown) * part
+            profile += (left - start.left) ** 2 * part
+    return found, profile
 
 
 def tie(problem: Problem, best: Fit) -> float:

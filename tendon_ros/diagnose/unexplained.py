@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
 from tendon_ros.diagnose.evidence import ENDED
-from tendon_ros.diagnose.form import form_power, own_power
+from tendon_ros.diagnose.form import form_power, own_power, own_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import LEFT_NOISE
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, Problem
 
 #: structured power of noise that wanders: sensors of sound simulated belts left 0.12 to 0.14
 WANDERS = 0.07
+#: deviations of what laws may get wrong that they may be wrong by, within a time about it [s]
+LAWS, NEARBY = 3.0, 0.3
 #: misfit, in units of what is usual, that is as likely to have a cause as not, and how fast that
 #: changes with its logarithm
 EVEN, STEEP = 1.6, 2.5
@@ -24,18 +29,40 @@ def unexplained(ready: Prepared, found: Found, state: Fit) -> float:
     Return the probability that something of the gap has a cause that was not named.
 
     What the laws of the file's own effects get wrong is no gap, and moves its numbers a little. It
-    takes none to the end of its tolerance: what does stays unexplained.
+    takes none to the end of its tolerance, and is nowhere far more than those effects do there:
+    what does, and what is, stays unexplained.
 
     :param ready: the problem.
     :param found: what the search has found.
     :param state: the fit of what is believed.
     :return: 0 to 1.
     """
-    problem = ready.problem
-    form = form_power(problem, found.start, state, resting=False)
-    if any(abs(z) >= ENDED and not t.guessed for t, z in problem.moved(state.model)):
-        form -= own_power(problem, found.start)
-    return left_over(stays(ready, state).whole, form)
+    problem, start = ready.problem, found.start
+    by_file = own_power(problem, start)
+    by_causes = form_power(problem, start, state, resting=False) - by_file
+    ended = any(abs(z) >= ENDED and not t.guessed for t, z in problem.moved(state.model))
+    form = by_causes if ended else by_causes + by_file
+    beyond = beyond_laws_of_file(problem, start, state)
+    return max(left_over(stays(ready, state).whole, form), left_over(beyond, by_causes))
+
+
+def beyond_laws_of_file(problem: Problem, start: Fit, state: Fit) -> float:
+    """
+    Return what stays where the laws of the file's own effects could not be wrong by as much.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: the fit of what is believed.
+    :return: structured misfit, in noise power per sample.
+    """
+    laws = own_profile(problem, start)
+    left = state.left.copy()
+    for n, _, span in problem.spans():
+        near = max(1, round(NEARBY / problem.rollouts.segments[n].period))
+        power, by_law = (uniform_filter1d(x[span], near) for x in (left**2, laws))
+        part = 1.0 - LAWS**2 * by_law / np.maximum(power, 1e-12)
+        left[span] *= np.sqrt(np.maximum(part, 0.0))
+    return problem.structured(left)
 
 
 def left_over(left: float, form: float) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.evidence import ENDED
+from tendon_ros.diagnose.form import own_power, own_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
@@ -62,3 +63,23 @@ def test_what_takes_a_number_to_the_end_of_its_tolerance_is_more_than_a_law(doub
     within = replace(start.model, moved=np.clip(start.model.moved, -2.0, 2.0))
     less = unexplained(doubtful, found, replace(start, model=within))
     assert less < unexplained(doubtful, found, start)
+
+
+@pytest.mark.parametrize(('once', 'told'), [(True, True), (False, False)])
+def test_what_is_far_more_than_laws_get_wrong_there_is_none_of_theirs(measured_on, once, told):
+    """As much on the whole: in a few knocks, or all along, by as much as a law may be off."""
+    body = load_instrument('single_body')
+    friction = ('coulomb_friction', 'pulley_body', {'torque': 1.0})
+    run = measured_on(body, friction, settings=(('duration', '6 s'), ('amplitude', '60 deg')))
+    ready = prepared([run], replace(body, effects=(EffectUse(*friction),)))
+    problem = ready.problem
+    start = problem.fitted(problem.empty)
+    found = Found(states=[start])
+    profile = own_profile(problem, start)
+    assert float(np.mean(profile)) == pytest.approx(own_power(problem, start), rel=0.2)
+    wrong = np.sqrt(profile)
+    if once:
+        knocks = np.arange(len(wrong)) % 250 < 10
+        wrong = np.where(knocks, np.sqrt(25.0 * np.mean(profile)), 0.0)
+    state = replace(start, left=start.left + wrong)
+    assert (unexplained(ready, found, state) > NAMED) == told
