@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from tendon_ros.base.errors import RecordingError
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.intake.astray import without_astray
 from tendon_ros.diagnose.intake.clipping import unclipped
 from tendon_ros.diagnose.intake.clock import cut_at_breaks
 from tendon_ros.diagnose.intake.counts import as_counted
@@ -31,6 +32,7 @@ _STEPS: tuple[Callable[[Sequence[Recording], Instrument], Sifted], ...] = (
     distinct,
     of_one_rig,
     fitting,
+    without_astray,
     cut_at_breaks,
     moving,
     within_limits,
@@ -39,6 +41,7 @@ _STEPS: tuple[Callable[[Sequence[Recording], Instrument], Sifted], ...] = (
     unclipped,
     fitting,
     as_sampled,
+    without_astray,  # of stamps that scatter, only now does it show
 )
 
 
