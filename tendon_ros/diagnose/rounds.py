@@ -8,8 +8,11 @@ only where the state before it leaves much more.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tendon_ros.diagnose.bent import at_once
+from tendon_ros.diagnose.excusing import without_excuses
+from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.guesses import better, far_off, under_way
 from tendon_ros.diagnose.steps import best_of, CORRECTED, Steps
 from tendon_ros.diagnose.worth import LEAST, stands_out, worthwhile
@@ -114,12 +117,21 @@ class Round:
         rivals = self._steps.fitted(state, best_of(proposals), 0.0) if proposals else []
         found: Fit | None = None
         if rivals:
-            best, *others = (r.fit for r in rivals)
-            fits = [best, *under_way(self.problem, state, best, others)]
-            settled = [self._steps.settled(fit.model) for fit in fits]
-            found = min(settled, key=lambda fit: fit.cost)
+            best, *others = rivals
+            close = under_way(self.problem, state, best.fit, [r.fit for r in others])
+            together = [best, *(r for r in others if any(r.fit is fit for fit in close))]
+            later = [r for r in others if all(r.fit is not fit for fit in close)]
+            settled = [self._ended(rival) for rival in together]
+            # a limit may have sunk to where it excuses only once it was fitted to its end
+            while not (whole := without_excuses(self.problem, state, settled)) and later:
+                settled.append(self._ended(later.pop(0)))
+            found = min((r.fit for r in whole), key=lambda fit: fit.cost, default=None)
         self._tried = state, proposals, found
         return found
+
+    def _ended(self, rival: Rival) -> Rival:
+        """Return a rival fitted to its end."""
+        return replace(rival, fit=self._steps.settled(rival.fit.model))
 
     def _simplest(self, before: Fit, state: Fit, proposals: Sequence[Proposal], many: Fit) -> Fit:
         """
