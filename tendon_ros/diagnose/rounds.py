@@ -84,7 +84,13 @@ class Round:
             alone = self.alone(state, proposals)
             if alone is not None:
                 fits.append(self._steps.pruned(self._start, alone, state.model.causes))
-        return better(self.problem, *(fit for fit in fits if self.believes(before, fit)))
+        whole = self._without_excuses(before, fits)
+        return better(self.problem, *(fit for fit in whole if self.believes(before, fit)))
+
+    def _without_excuses(self, before: Fit, fits: Sequence[Fit]) -> list[Fit]:
+        """Return the fits but for those in which a limit that has come in excuses."""
+        rivals = [Rival(fit.model.causes[-1], fit) for fit in fits if fit.model.causes]
+        return [rival.fit for rival in without_excuses(self.problem, before, rivals)]
 
     def believes(self, before: Fit, fit: Fit) -> bool:
         """
@@ -142,6 +148,10 @@ class Round:
         one = self.alone(state, proposals)
         if one is None or not self.believes(before, one):
             return many
+        # a limit may have sunk while others that came with it went
+        whole = self._without_excuses(before, [many, one])
+        if len(whole) < 2:
+            return whole[0] if whole else many
         if len(many.model.causes) < 2:
             return min(one, many, key=lambda fit: fit.cost)
         return many if worthwhile(self.problem, self._start, one, many) else one

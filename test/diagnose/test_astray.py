@@ -50,6 +50,7 @@ def test_single_readings_are_taken_out_and_told(axis, swings, by):
         (slice(700, None), 0.02),  # counts were lost
         (slice(None, None, 20), 0.02),  # so it reads
         ([700], 1e-5),  # within counts
+        ([2], 0.02),  # at the end
     ],
 )
 def test_others_stay(axis, swings, rows, by):
@@ -80,3 +81,12 @@ def test_of_a_few_readings_none_is_judged(axis, swings):
         [replace(c, time=c.time[:40], value=c.value[:40]) for c in swings.channels.values()]
     )
     assert without_astray([short], axis) == ((short,), [])
+
+
+def test_a_count_that_comes_and_goes_at_rest_is_none_however_large(axis, swings):
+    channel = swings[POSITION]
+    value = np.zeros(channel.value.size)
+    value[700:1500] = 10.0 * np.round(10.0 * np.sin(0.01 * np.arange(800)))
+    value[[100, 400, 2000]] = 10.0
+    run = swings.with_channels([Channel(POSITION, channel.time, value)])
+    assert without_astray([run], axis) == ((run,), [])

@@ -19,7 +19,7 @@ from tendon_ros.diagnose.intake.step import Sifted
 from tendon_ros.model.instrument import Instrument
 
 #: times what readings around are off a curve that one is off which is astray; and times that
-#: those beside it are off at most, once it is gone
+#: those beside it are off at most, once it is gone, and less than it was
 ASTRAY, BESIDE = 12.0, 4.0
 #: readings on either side of those around; and counts that one that is astray is off at least
 AROUND, COUNTS = 25, 3.0
@@ -69,7 +69,11 @@ def _astray(channel: Channel, count: float) -> tuple[NDArray[np.bool_], FloatArr
     if size < 2 * AROUND:
         return nothing, np.zeros(size)
     off = _off(channel.time, value)
-    count = max(count, FINEST)
+    # a sensor may count otherwise than its file says, and while it rests a count is all there is
+    steps = np.abs(np.diff(value))
+    count = max(
+        count, FINEST, float(steps[steps > 0.0].min(initial=np.inf)) if steps.any() else 0.0
+    )
     usual = median_filter(np.abs(off), 2 * AROUND + 1, mode='nearest')
     wild = np.abs(off) > np.maximum(ASTRAY * usual, COUNTS * count)
     # what is astray takes those beside it along, by less
@@ -80,7 +84,8 @@ def _astray(channel: Channel, count: float) -> tuple[NDArray[np.bool_], FloatArr
         if near[0] < 0 or near[-1] >= size:
             continue
         rest = _off(channel.time[near], value[near])[2:-2]
-        if np.abs(rest).max() < BESIDE * max(usual[n], count):
+        # beside a leap, what is on either side of it stays as it was
+        if np.abs(rest).max() < min(BESIDE * max(usual[n], count), abs(off[n]) / BESIDE):
             gone[n] = True
     if np.count_nonzero(gone) > FEW * size:
         return np.zeros(size, dtype=np.bool_), off
