@@ -77,6 +77,8 @@ def disagreement(
     :param beyond: probability that something of the gap has a cause that was not named.
     :return: the effect; None where none explains much.
     """
+    if not 2 <= len(_recordings(ready.problem)) <= MOST:
+        return None
     again = ready.unrepeated(final.model)
     if again is ready:
         return apart(ready.problem, final, candidates) if beyond >= NAMED else None
@@ -89,14 +91,14 @@ def apart(problem: Problem, fit: Fit, candidates: Sequence[Candidate]) -> Apart 
     """
     Return the effect that explains most of what stays where it has its own size in each recording.
 
-    :param problem: the bins.
+    :param problem: the bins of several recordings.
     :param fit: of what is believed.
     :param candidates: effects that may be asked for.
     :return: the simplest of those that explain most of it; None where none does.
     """
     own = _recordings(problem)
     stays = problem.structured(fit.left)
-    if not 2 <= len(own) <= MOST or not stays > 0.0:
+    if not stays > 0.0:
         return None
     beside = Beside(problem, fit)
 

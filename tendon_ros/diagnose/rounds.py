@@ -116,7 +116,7 @@ class Round:
 
         :param state: what holds already.
         :param proposals: causes, best first.
-        :return: the fit of the one that fits best; None without proposals.
+        :return: the fit of the one that fits best; None where none does but a limit that excuses.
         """
         if self._tried and self._tried[0] is state and self._tried[1] is proposals:
             return self._tried[2]
