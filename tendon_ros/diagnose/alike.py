@@ -24,6 +24,7 @@ from tendon_ros.identify.tied import RUBS, tied
 
 #: [s] by which a filter may make a speed late
 FILTERED = (2e-3, LONGEST)
+SMOOTHED = 0.5  # part of the cost without it that a filter leaves if there is one
 
 
 def leaning(
@@ -44,12 +45,17 @@ def leaning(
     report('looking over what is guessed', 0.0)
     known = [problem.empty, *(lost(problem.empty, c) for c in signless(problem, candidates))]
     filters = [c for c in candidates if c.opened]
-    begun: list[Model] = []
+    plain: list[Model] = []
+    smooth: list[Model] = []
     for model in known:
-        begun += tied(problem, partial(_usual, candidates, model))
+        plain += tied(problem, partial(_usual, candidates, model))
         for late in filters:
-            begun += tied(problem, partial(_filtered, candidates, model, late), (RUBS, FILTERED))
-    best = min(begun, key=problem.cost, default=None)
+            smooth += tied(problem, partial(_filtered, candidates, model, late), (RUBS, FILTERED))
+    best = min(plain, key=problem.cost, default=None)
+    # one size more always leaves less, and leads all guesses elsewhere
+    other = min(smooth, key=problem.cost, default=None)
+    if other and (best is None or problem.cost(other) < SMOOTHED * problem.cost(best)):
+        best = other
     return ready if best is None else ready.leaning(best.moved.tolist())
 
 
