@@ -187,16 +187,14 @@ class Mapping(_Strict):
                 _checked(source.unit, unit_of(name))
             except (RecordingError, ValueError) as error:
                 raise ValueError(f'{name}: {error}') from error
-            try:
-                if isinstance(source.offset, str):
-                    parsed(source.offset, unit_of(name))
-            except ValueError as error:
-                raise ValueError(f'{name}.offset: {error}') from error
-            try:
-                if source.wrap is not None and parsed(source.wrap, unit_of(name)) <= 0.0:
-                    raise ValueError(f'{source.wrap!r} must be more than 0')
-            except ValueError as error:
-                raise ValueError(f'{name}.wrap: {error}') from error
+            for field, given in (('offset', source.offset), ('wrap', source.wrap)):
+                try:
+                    if isinstance(given, str):
+                        read = parsed(given, unit_of(name))
+                        if field == 'wrap' and read <= 0.0:
+                            raise ValueError(f'{given!r} must be more than 0')
+                except ValueError as error:
+                    raise ValueError(f'{name}.{field}: {error}') from error
         if not any(name.startswith('actuator/') for name in value):
             raise ValueError(f'none of {listed(value)} is of the motors; map actuator/JOINT/FIELD')
         return value

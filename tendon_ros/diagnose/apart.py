@@ -151,13 +151,9 @@ def apart_words(one: Apart) -> str:
 
 def _recordings(problem: Problem) -> dict[str, NDArray[np.bool_]]:
     """Return by recording which samples are its own, of those that have any."""
-    spans = problem.spans()
-    found: dict[str, NDArray[np.bool_]] = {}
-    for n, _, span in spans:
-        if span.stop > span.start:
-            name = problem.rollouts.segments[n].name
-            found.setdefault(name, np.zeros(spans[-1][2].stop, dtype=np.bool_))[span] = True
-    return found
+    segments = problem.rollouts.segments
+    owner = problem.sampled([np.full(len(s.time), n) for n, s in enumerate(segments)])
+    return {segments[n].name: owner == n for n in np.unique(owner).tolist()}
 
 
 def _look(

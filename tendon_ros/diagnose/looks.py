@@ -112,6 +112,13 @@ class Looks:
     def _again(self, why: str) -> None:
         self._report(f'looking again: {why}', 0.0)
 
+    def _from(self, why: str, begun: Model) -> None:
+        """Look again from a model, and keep what that finds if it is clearly better."""
+        self._again(why)
+        other = self._look(begun)
+        if other.final.cost < GAINED * self.found.final.cost:
+            self.found = other
+
     def _weighed(self) -> None:
         """Let channels weigh by what is left of them, where a machine is far from its file."""
         if self.found.unweighed is None:
@@ -142,10 +149,7 @@ class Looks:
                 # begun with a sign that nobody needs, a search would only do the same again
                 if not worthwhile(problem, self.found.start, before, begun):
                     continue
-                self._again('a sensor may have lost its sign')
-                other = self._look(begun.model)
-                if other.final.cost < GAINED * self.found.final.cost:
-                    self.found = other
+                self._from('a sensor may have lost its sign', begun.model)
 
     def _back_with_guesses(self) -> None:
         """
@@ -161,10 +165,7 @@ class Looks:
             model = model.joined(cause, final.model.values(k))
         begun = problem.fitted(model)
         if begun.cost < GAINED * final.cost:
-            self._again('guesses went astray on the way to what was found')
-            other = self._look(begun.model)
-            if other.final.cost < GAINED * final.cost:
-                self.found = other
+            self._from('guesses went astray on the way to what was found', begun.model)
 
     def _without_events(self) -> None:
         """

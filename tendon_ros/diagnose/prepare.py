@@ -47,6 +47,10 @@ class Prepared:
     looser: float = 1.0
     likely: tuple[float, ...] = ()
 
+    def _on(self, rollouts: Rollouts) -> Prepared:
+        """Return the same with other rollouts."""
+        return _problems(rollouts, self.noise, self.shift, self.looser, self.likely)
+
     def heard_again(self, model: Model) -> Prepared:
         """
         Return the same with the noise that is heard once a model has taken its part away.
@@ -90,8 +94,7 @@ class Prepared:
             for a, b in zip(one.measured, other.measured, strict=True)
         ):
             return self
-        again = rollouts.like(within)
-        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+        return self._on(rollouts.like(within))
 
     def read_again(self) -> Prepared:
         """Return the same had the motors been read once more, with other errors as large."""
@@ -100,8 +103,7 @@ class Prepared:
             replace(segment, motion=again)
             for segment, (again, _) in zip(rollouts.segments, self.noise.motions, strict=True)
         ]
-        again = rollouts.like(segments)
-        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+        return self._on(rollouts.like(segments))
 
     def quieter(self, other: Prepared) -> bool:
         """
@@ -145,7 +147,7 @@ class Prepared:
         rollouts = self.whole.rollouts
         tolerance = loosest(rollouts.instrument, segments)
         again = rollouts.like(segments, tolerance)
-        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+        return self._on(again)
 
     def allowing(self, start: Model, model: Model) -> Prepared:
         """
@@ -174,8 +176,7 @@ class Prepared:
             )
             for segment, parts in zip(whole.rollouts.segments, wrong, strict=True)
         ]
-        again = whole.rollouts.like(segments)
-        return _problems(again, self.noise, self.shift, self.looser, self.likely)
+        return self._on(whole.rollouts.like(segments))
 
     def moved(self, shift: int) -> Prepared:
         """

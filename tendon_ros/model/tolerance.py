@@ -42,11 +42,8 @@ def read_stated(text: object, unit: str) -> Stated:
     if not isinstance(text, str):
         return Stated(parsed(text, unit))
     if text.strip() == GUESSED:
-        raise ValueError(
-            f'{text!r}: write the number that is {GUESSED} before it, in {unit}'
-            if unit != '1'
-            else f'{text!r}: write the number that is {GUESSED} before it'
-        )
+        own = '' if unit == '1' else f', in {unit}'
+        raise ValueError(f'{text!r}: write the number that is {GUESSED} before it{own}')
     number, spread = _parts(text)
     *_, last = number.split() or ['']
     if spread is not None and last == GUESSED:
