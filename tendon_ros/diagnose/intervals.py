@@ -128,7 +128,8 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     Return the causes of which not even whether they are there can be told by their sizes.
 
     Where a torque constant is guessed, friction may be as small as that may be large: it is there
-    all the same, whatever its unit. What the file has of it is in its own unit.
+    all the same, whatever its unit. What the file has of it is in its own unit, and so is what a
+    factor multiplies: a body that is twice as heavy may be a motor that is half as strong.
 
     :param problem: the data.
     :param fit: the fit.
@@ -137,10 +138,11 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
     found = set()
     units = [t.guessed and t.quantity == 'torque_gain' for t in problem.tolerances]
     own = fit.slope.shape[1] - len(units)
-    rows = parameter_intervals(problem, fit, np.array([False] * own + units))
+    in_units = parameter_intervals(problem, fit, np.array([False] * own + units))
+    free = parameter_intervals(problem, fit)
     # an angle that a law gets wrong is no less there
     whole = parameter_intervals(problem, fit, laws=False)
-    for k, (cause, row) in enumerate(zip(fit.model.causes, rows, strict=True)):
+    for k, cause in enumerate(fit.model.causes):
         if cause.given:
             known = {t.parameter: t.axis for t in problem.tolerances if t.is_moved_by(cause)}
             values = cause.as_given
@@ -154,7 +156,8 @@ def unsized(problem: Problem, fit: Fit) -> frozenset[int]:
         sizes = [
             p for p in cause.parameters if not (p.is_shape or p.search in ('share', 'switch'))
         ]
-        if sizes and all(row[p.name][0] <= p.neutral <= row[p.name][1] for p in sizes):
+        rows = {p.name: (free if p.neutral == 1.0 else in_units)[k][p.name] for p in sizes}
+        if sizes and all(rows[p.name][0] <= p.neutral <= rows[p.name][1] for p in sizes):
             found.add(k)
     return frozenset(found)
 

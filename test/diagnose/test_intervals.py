@@ -1,5 +1,7 @@
 """Intervals cover the truth as often as they say, correlated residuals or not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -141,6 +143,25 @@ def test_no_number_of_recordings_tells_the_scale_of_what_is_guessed(measured_on)
         widths.append((high - low) / fit.model.values(0)['torque'])
     # with a known scale it would be some hundredths
     assert min(widths) > 1.0
+
+
+def test_a_factor_beside_a_guessed_unit_may_as_well_be_none(measured_on):
+    """A body of one and a half times its inertia, or a motor of two thirds of its torque."""
+    axis = load_instrument('driven_axis')
+    weighed = replace(axis, tolerances={**axis.tolerances, 'pulley_axis.inertia': 0.02})
+    truth = (
+        ('inertia', 'pulley_axis', {'scale': 1.5}),
+        ('coulomb_friction', 'pulley_axis', {'torque': 0.06}),
+    )
+    motion = (('duration', '6 s'), ('amplitude', '30 deg'))
+    problem = prepared([measured_on(axis, *truth, settings=motion)], weighed).whole
+    model = problem.empty
+    for effect, values in (
+        ('coulomb_friction', {'torque': 0.06}),
+        ('inertia', {'scale': 1.5}),
+    ):
+        model = model.joined(Candidate(effect, 'pulley_axis'), values)
+    assert unsized(problem, problem.fitted(model)) == {1}
 
 
 def test_waves_are_counted_along_the_whole_way():
