@@ -7,6 +7,8 @@ from pathlib import Path
 
 HELP = 'make, run and score the blind benchmark of the diagnosis'
 
+MOST = 0.1  # nuisance, relative: three deviations of a damping that is off by three times as much
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """
@@ -109,6 +111,10 @@ def _make(args: argparse.Namespace) -> None:
     _check('--seed', args.seed, 0)
     _check('--jobs', args.jobs, 1)
     _check('--nuisance', args.nuisance, 0.0)
+    if args.nuisance > MOST:
+        raise RecordingError(
+            f'--nuisance {args.nuisance}: is relative, one sigma; give {MOST} ({MOST:.0%}) or less'
+        )
     settings = Settings(args.bench, args.nuisance, tuple(strata), tuple(channels))
     with shown('making cases') as progress:
         make(args.out, args.seed, args.cases, settings, jobs=args.jobs, progress=progress)
