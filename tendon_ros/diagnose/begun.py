@@ -131,7 +131,9 @@ class Begun:
         # guesses that have moved to do without one friction hide that another does as well
         if any(t.guessed for t in self._problem.tolerances):
             far += [
-                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
+                c
+                for c in self._steps.candidates
+                if any(alike(c, one) for one in (cause, *close)) and c not in {cause, *close, *far}
             ]
         rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
         if rest is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 import math
 
@@ -13,6 +13,7 @@ from tendon_ros.base.recording import Recording, unit_of
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.gap import noise_of, offs
 from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.model.instrument import Instrument
@@ -125,17 +126,19 @@ def weak_words(ready: Prepared, final: Model) -> list[str]:
     return found
 
 
-def scaled_words(final: Model) -> list[str]:
+def scaled_words(final: Model, contested: Collection[Candidate] = ()) -> list[str]:
     """
     Say which encoders would be further off than any is.
 
     :param final: what was found, and what is used beside it.
+    :param contested: those in whose place another effect does as well: friction, for one, of which
+        a gain takes what part it can.
     :return: a sentence for each.
     """
     gains = [
         (cause.place, final.values(k)['gain'])
         for k, cause in enumerate(final.causes)
-        if cause.effect == 'encoder_gain'
+        if cause.effect == 'encoder_gain' and cause not in contested
     ]
     return [
         f'{place} would read {gain:.3g} times its angle, and no encoder is that far off: a unit '

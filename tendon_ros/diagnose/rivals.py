@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from tendon_ros.diagnose.form import tie
-from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.steps import judged_cost, Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
@@ -89,6 +89,26 @@ def close_ones(problem: Problem, state: Fit, without: Fit, rivals: Sequence[Riva
     near = state.cost + leaves * max(without.cost - state.cost, 0.0)
     near += tie(problem, state) * len(state.left)
     return [r for r in rivals if r.fit.cost < near]
+
+
+def contested(problem: Problem, found: Found) -> set[Candidate]:
+    """
+    Return the causes in whose place another effect makes up for nearly all that they do.
+
+    :param problem: the data.
+    :param found: what the search has found.
+    :return: those.
+    """
+    return {
+        cause
+        for cause, without, rivals in zip(
+            found.final.model.causes, found.without, found.rivals, strict=True
+        )
+        if any(
+            rival.candidate.effect != cause.effect
+            for rival in close_ones(problem, found.final, without, rivals)
+        )
+    }
 
 
 def relieved(problem: Problem, fit: Fit) -> Fit | None:

@@ -48,6 +48,7 @@ from tendon_ros.diagnose.patch import doubted, patched
 from tendon_ros.diagnose.patience import Patience, USUAL
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
+from tendon_ros.diagnose.rivals import contested
 from tendon_ros.diagnose.spread import known_words
 from tendon_ros.diagnose.unexplained import unexplained
 from tendon_ros.identify.candidate import everyone
@@ -184,7 +185,7 @@ def diagnose(
             *unheard_words(recordings, runs, given),
             *strong_words(runs, instrument),
             *weak_words(heard, final.model),
-            *scaled_words(final.model),
+            *scaled_words(final.model, contested(problem, found)),
             *lost_words(heard, final.model),
             *brief_words(heard, final.model),
             *absurd_words([m for m in moved if m.quantity in SCALING]),

@@ -114,6 +114,8 @@ def test_an_angle_in_degrees_is_no_encoder_that_is_off(measured_on, times, far):
     # where a gain makes up for it, that gain is what cannot be
     found = model.joined(Candidate('encoder_gain', 'encoder_2'), {'gain': min(times, 5.0)})
     assert bool(scaled_words(found)) is far
+    # but where another effect does as well, it rather is that one
+    assert not scaled_words(found, found.causes)
 
 
 @pytest.mark.parametrize(

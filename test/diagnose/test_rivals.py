@@ -6,9 +6,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway, relieved, sharpened
+from tendon_ros.diagnose.rivals import (
+    alike,
+    bared,
+    close_ones,
+    contested,
+    halfway,
+    relieved,
+    sharpened,
+)
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen
@@ -68,6 +76,12 @@ def test_near_is_half_of_a_cause_and_close_nearly_all(bench, measured_on):
     # of what stays of channels less is noise
     machine = SimpleNamespace(by_misfit=True, structured=problem.structured)
     assert close_ones(machine, state, without, rivals) == rivals[:1]
+    # who comes that near may be the cause; the same effect elsewhere is of the same kind
+    cause = Candidate('coulomb_friction', 'pulley_M')
+    state = replace(state, model=SimpleNamespace(causes=(cause,)))
+    for others, said in ((rivals, {cause}), (rivals[:1], set()), (rivals[2:], set())):
+        found = Found(states=[state], rivals=[others], without=[without])
+        assert contested(problem, found) == said
 
 
 @pytest.mark.parametrize(('here', 'fits'), [(1.3, 2), (0.9, 1)])
