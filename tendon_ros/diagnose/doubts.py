@@ -28,6 +28,8 @@ WEAK = 20.0
 #: times that an encoder may be off before it is taken for something else than an encoder's gain:
 #: one by a tenth happens, where a lever is not what it should be
 MISCOUNTED = 1.25
+#: part of what a channel varies by from which on noise that is accounted for hides much
+HIDES = 0.2
 #: part of what an angle varies by, and times its noise, beyond which it is not foretold at all
 LOST, UNFORETOLD = 0.5, 10.0
 #: times its noise that a channel is off from which on one wants to know when; and the part of that
@@ -246,16 +248,20 @@ def loud_words(ready: Prepared) -> list[str]:
     ]
 
 
-def coarse_words(ready: Prepared) -> list[str]:
+def coarse_words(ready: Prepared, *, much: bool = False) -> list[str]:
     """
     Say of which channels counts of the encoders, or bins, hide more than their own noise does.
 
     :param ready: the problem, with its noise.
+    :param much: of which they hide a good part of all that the channel does, or of the others.
     :return: a sentence for each of whose sensor the file tells the noise.
     """
     found = []
     for one in _levels(ready):
         if one.heard <= LOUD * one.sensor or one.heard > LOUD * one.told:
+            continue
+        part = min(one.heard / max(one.varies, 1e-30), 1.0)
+        if (part > HIDES) is not much:
             continue
         if one.bins > one.counts:
             period = ready.whole.rollouts.segments[0].period
@@ -270,6 +276,8 @@ def coarse_words(ready: Prepared) -> list[str]:
                 'much of a count. What is smaller does not show here; slower motions or a finer '
                 'encoder show more'
             )
+        if much:
+            why += f'. That is {part:.0%} of all that it does: that there is no gap says little'
         found.append(
             f'{one.channel} is foretold to {one.heard:.2g} {unit_of(one.channel)} and no better, '
             f'{one.heard / one.sensor:.0f} times what its sensor leaves: {why}'
@@ -279,9 +287,14 @@ def coarse_words(ready: Prepared) -> list[str]:
 
 @dataclass(frozen=True)
 class _Level:
-    """Noise of a channel's bins in its unit: heard, and what its sensor, counts and bins make."""
+    """
+    Noise of a channel's bins in its unit: heard, and what its sensor, counts and bins make.
+
+    ``varies``: what it measures, about its mean.
+    """
 
     channel: str
+    varies: float
     heard: float
     sensor: float
     counts: float
@@ -300,8 +313,9 @@ def _levels(ready: Prepared) -> list[_Level]:
     for segment, *made in zip(segments, ready.noise.counts, ready.noise.bins, strict=True):
         for m, *rows in zip(segment.measured, *made, strict=True):
             if m.floor > 0.0:
+                varies = float(np.nanvar(m.value))
                 heard, *others = (float(np.mean(row**2)) for row in (m.noise, *rows))
-                power = np.array([heard, m.floor**2, *others])
+                power = np.array([varies, heard, m.floor**2, *others])
                 powers.setdefault(m.sensor.channel, []).append(power)
     return [
         _Level(channel, *np.sqrt(np.mean(parts, axis=0)).tolist())

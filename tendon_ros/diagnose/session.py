@@ -192,6 +192,7 @@ def diagnose(
             *([apart_words(differs)] if differs else []),
             *(ended_words(moved) if beyond >= NAMED and not differs else []),
             *(loud_words(heard) if settled else []),
+            *(coarse_words(heard, much=True) if verdict == 'no_gap' else []),
         ),
         left_out=(
             *([] if settled else loud_words(heard)),

@@ -71,6 +71,25 @@ def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(me
     assert all('finer encoder' in said and ' N m and no better' in said for said in words)
     # counts account for it: nothing shakes
     assert not loud_words(ready)
+    # a small part of what it does: a note, and no doubt of the verdict
+    assert not coarse_words(ready, much=True)
+
+
+def test_noise_that_hides_most_of_what_a_channel_does_makes_one_doubt_that_there_is_no_gap(
+    measured_on,
+):
+    body = load_instrument('single_body')
+    # a loop that shakes by counts, a torque sensor that tells it, and hardly any motion
+    motor = replace(body.motors[0], controller=replace(body.motors[0].controller, kd=0.005))
+    sensors = [
+        replace(s, noise=s.noise / 30.0) if s.channel == EFFORT else s for s in body.sensors
+    ]
+    body = replace(body, motors=(motor,), sensors=tuple(sensors))
+    still = measured_on(body, settings=(('duration', '6 s'), ('amplitude', '0.3 deg')))
+    ready = prepared([still], body)
+    [said] = [one for one in coarse_words(ready, much=True) if one.startswith(EFFORT)]
+    assert said.endswith('that there is no gap says little')
+    assert not any(one.startswith(EFFORT) for one in coarse_words(ready))
 
 
 @pytest.mark.parametrize(('times', 'said'), [(100.0, True), (3.0, False)])
