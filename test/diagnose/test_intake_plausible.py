@@ -103,6 +103,33 @@ def test_a_dead_channel(bench, sound, spoilt):
         assert any(f'free: {name} left out: it stays at' in s for s in intake.left_out)
 
 
+@pytest.mark.parametrize('step', [0.0, 2e-3])
+def test_a_channel_of_noise_alone_is_dead_where_the_motion_should_change_it(
+    bench, sound, spoilt, step
+):
+    """An open input floats: nothing of what moves shows in it."""
+    noise = np.random.default_rng(4)
+
+    def floating(t, v):
+        read = 0.01 + 2e-3 * noise.standard_normal(v.size)
+        return t, step * np.round(read / step) if step else read
+
+    name = 'actuator/pulley_M/effort'
+    intake = admitted(spoilt(sound, name, floating), bench)
+    assert all(name not in run for run in intake.recordings)
+    said = [s for s in intake.left_out if f'{name} left out: it stays at 0.0' in s]
+    assert len(said) == len(sound)
+    assert all('but for noise where the motion should change it' in s for s in said)
+
+
+def test_noise_is_no_dead_channel_where_nothing_should_change_it(bench, sound, spoilt):
+    noise = np.random.default_rng(4)
+    runs = spoilt(
+        sound[1:], 'load_cell/force', lambda t, v: (t, 0.02 * noise.standard_normal(v.size))
+    )
+    assert admitted([sound[0], *runs], bench).left_out == ()
+
+
 def test_a_load_cell_that_nothing_touches_is_not_dead(bench, sound, spoilt):
     runs = spoilt(sound[1:], 'load_cell/force', lambda t, v: (t, np.zeros_like(v)))
     assert admitted([sound[0], *runs], bench).left_out == ()

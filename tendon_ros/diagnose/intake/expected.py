@@ -34,17 +34,27 @@ STRONG = 1.0  # deviations of the sensor, most of which the low-pass takes
 VISIBLE = 1.0  # deviations of the sensor that cannot leave every sample the same
 COUNTS = 3.0  # counts of it that cannot either
 HELD = 0.01  # [rad] that friction may keep a pulley from turning
+#: squares of differences of neighbouring samples, by their variance, of noise alone (2 where no
+#: sample knows of the one before), and so many samples to tell
+ALONE, MANY = 1.6, 200
+#: part of what is expected that a sensor may show which shows nothing of it
+NOTHING = 0.2
 _FILTER = butter(2, CUT_OFF, fs=1.0 / STEP, output='sos')
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A sensor's channel beside its expectation on one grid, low-passed; shape (n,) each."""
+    """
+    A sensor's channel beside its expectation on one grid, low-passed; shape (n,) each.
+
+    ``constant``: it does not change at all; ``noise``: from one sample to the next alone.
+    """
 
     sensor: Sensor
     measured: FloatArray
     expected: FloatArray
     constant: bool
+    noise: bool = False
 
     @property
     def expected_strong(self) -> bool:
@@ -58,6 +68,12 @@ class Comparison:
         if self.sensor.kind == 'angle':
             small = max(small, HELD)
         return bool(self.expected.std() > small)
+
+    @property
+    def blind(self) -> bool:
+        """Whether the sensor shows noise where the model expects far more of it."""
+        strong = self.expected_visible and self.factor < NOTHING
+        return self.noise and not self.constant and strong
 
     @property
     def telling(self) -> bool:
@@ -94,7 +110,7 @@ class Expectation:
     @property
     def agreement(self) -> float:
         """Mean size of the correlation of all channels that vary."""
-        varying = [c for c in self.comparisons.values() if not c.constant]
+        varying = [c for c in self.comparisons.values() if not (c.constant or c.noise)]
         return float(np.mean([abs(c.correlation) for c in varying])) if varying else 0.0
 
 
@@ -158,11 +174,18 @@ def _expectation(
             measured,
             _low_passed(readings[s.channel]),
             bool(np.ptp(recording[s.channel].value) == 0.0),
+            _noise_alone(recording[s.channel].value),
         )
         for s, measured in drive.measured.items()
         if not (load and s.channel.startswith('load_cell/'))
     }
     return Expectation(comparisons, drive.motion, loaded=bool(load))
+
+
+def _noise_alone(value: FloatArray) -> bool:
+    """Return whether no sample of a channel knows of the one before."""
+    variance = float(np.var(value))
+    return value.size > MANY and float(np.mean(np.diff(value) ** 2)) > ALONE * variance > 0.0
 
 
 def _run(

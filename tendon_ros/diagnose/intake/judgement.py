@@ -44,6 +44,12 @@ def judged(name: str, runs: Sequence[Expectation]) -> Finding | None:
     one = run.comparisons[name]
     if one.constant:
         return _dead(name, run, runs)
+    if one.noise and _blind(name, run, runs):
+        return Finding(
+            f'it stays at {float(one.measured.mean()):.3g} but for noise where the motion should '
+            f'change it by {float(np.ptp(one.expected)):.3g}: the sensor is dead or unplugged; '
+            'mend it'
+        )
     if not one.telling:
         return UNTOLD
     r, factor = one.correlation, one.factor
@@ -136,3 +142,12 @@ def _dead(name: str, run: Expectation, runs: Sequence[Expectation]) -> Finding |
             f'{float(np.ptp(one.expected)):.3g}: the sensor is dead or unplugged; mend it'
         )
     return UNTOLD
+
+
+def _blind(name: str, run: Expectation, runs: Sequence[Expectation]) -> bool:
+    """Return whether a channel of noise alone should show more."""
+    one = run.comparisons[name]
+    # a load that nothing touches is noise as well, whichever run agrees best with all others
+    if run.agreement > SUPPORT and one.sensor.kind != 'contact_force':
+        return one.blind
+    return all(r.comparisons[name].blind for r in runs if name in r.comparisons)
