@@ -41,15 +41,24 @@ def told_apart(problem: Problem, model: Model) -> Model | None:
 
     :param problem: the data.
     :param model: causes.
-    :return: without the smallest delay, the others less by it; None where some sensor is on time.
+    :return: without the smallest delay, the others less by it; None where some sensor is on time,
+        or only filtered.
     """
     late = _late(model)
     if not _kinds(problem).keys() <= {model.causes[k].place for k in late}:
         return None
-    shared = min(late, key=lambda k: late[k])
+    # what a filter makes late is its own
+    filters = {k: time * model.values(k).get('filtered', 0.0) for k, time in late.items()}
+    dead = {k: time - filters[k] for k, time in late.items()}
+    shared = min(dead, key=lambda k: dead[k])
+    if not dead[shared] > 0.0:
+        return None
     apart = model.without(*late)
-    for k in late.keys() - {shared}:
-        apart = apart.joined(model.causes[k], {'time': late[k] - late[shared]})
+    for k in sorted(late):
+        rest = late[k] - dead[shared]
+        if rest > 0.0:
+            stays = {'time': rest, 'filtered': filters[k] / rest}
+            apart = apart.joined(model.causes[k], model.values(k) | stays)
     return apart
 
 

@@ -26,6 +26,30 @@ def test_what_all_sensors_are_late_by_is_the_clock(measured_on):
     assert apart.values(0)['time'] == pytest.approx(0.004)
 
 
+@pytest.mark.parametrize(
+    ('filtered', 'left'), [(0.0, {0: 4.0}), (0.25, {0: 5.0, 1: 2.0}), (1.0, None)]
+)
+def test_what_a_filter_makes_late_is_no_clock(measured_on, filtered, left):
+    body = load_instrument('single_body')
+    run = measured_on(body, settings=(('duration', '4 s'), ('amplitude', '30 deg')))
+    problem = prepared([run], body).problem
+    smoothed = Candidate('sensor_delay', 'torque_body', opened=('filtered',))
+    model = problem.empty
+    for cause, more in (
+        (Candidate('sensor_delay', 'encoder_body'), {'time': 0.011 if filtered else 0.012}),
+        (smoothed, {'time': 0.008, 'filtered': filtered}),
+    ):
+        model = model.joined(cause, more)
+    apart = told_apart(problem, model)
+    if left is None:
+        assert apart is None
+        return
+    found = {k: 1e3 * apart.values(k)['time'] for k in range(len(apart.causes))}
+    assert found == pytest.approx(left)
+    if filtered:
+        assert apart.values(1)['filtered'] == 1.0
+
+
 @pytest.fixture(scope='module')
 def problem(bench, measured_on):
     return prepared([measured_on(bench)], bench).problem
