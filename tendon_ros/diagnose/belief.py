@@ -25,6 +25,7 @@ from tendon_ros.diagnose.bent import (
 )
 from tendon_ros.diagnose.clock import Early, early
 from tendon_ros.diagnose.company import companies, rubbing
+from tendon_ros.diagnose.ends import at_an_end
 from tendon_ros.diagnose.excusing import excuses
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.giving_less import giving_less
@@ -120,6 +121,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(problem, final.model)
     less = giving_less(problem, final)
     undone = undoing(problem, final) | absorbed(problem, final, found.without) | less
+    undone |= at_an_end(problem, final, found.without)
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)

@@ -32,6 +32,7 @@ from tendon_ros.diagnose.doubts import (
     unheard_words,
     weak_words,
 )
+from tendon_ros.diagnose.ends import end_words
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps, offs
@@ -188,6 +189,7 @@ def diagnose(
             *scaled_words(final.model, contested(problem, found)),
             *lost_words(heard, final.model),
             *brief_words(heard, final.model),
+            *end_words(problem, believed),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *([apart_words(differs)] if differs else []),
             *(ended_words(moved) if beyond >= NAMED and not differs else []),
