@@ -161,6 +161,7 @@ def diagnose(
     others = [*gather.alternatives(problem, found, held), *gather.read_right(heard, final)]
     moved = gather.moved(heard.problem, final, others)
     differs = disagreement(heard, final, asked, beyond)
+    touching = end_words(problem, believed)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -189,10 +190,10 @@ def diagnose(
             *scaled_words(final.model, contested(problem, found)),
             *lost_words(heard, final.model),
             *brief_words(heard, final.model),
-            *end_words(problem, believed),
+            *touching,
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *([apart_words(differs)] if differs else []),
-            *(ended_words(moved) if beyond >= NAMED and not differs else []),
+            *(ended_words(moved) if beyond >= NAMED and not (differs or touching) else []),
             *(loud_words(heard) if settled else []),
             *(coarse_words(heard, much=True) if verdict == 'no_gap' else []),
         ),

@@ -41,9 +41,11 @@ def started(steps: Steps) -> Fit:
     """
     problem = steps.problem
     near = steps.settled(problem.begun)
+    steps.report('looking over what is guessed from afar', 0.01)
     far = from_afar(steps, problem.begun)
     if far is None:
         return near
+    steps.report('moving what is guessed aside', 0.02)
     # what neighbouring bins share is what a better place would take away
     shared = problem.structured(near.left) * len(near.left)
     return nudged(steps, far if near.cost - far.cost > (1.0 - FARTHER) * shared else near)

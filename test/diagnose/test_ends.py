@@ -63,3 +63,5 @@ def test_a_stop_is_no_cause_of_the_catalogue(axis, runs):
     assert not told.causes
     assert told.verdict == 'unexplained'
     assert any('it touches something there' in said for said in told.doubts)
+    # what it takes numbers of the file to says nothing of them
+    assert not any('end of its tolerance' in said for said in told.doubts)
