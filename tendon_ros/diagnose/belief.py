@@ -19,7 +19,6 @@ from tendon_ros.diagnose.bent import (
     at_bound,
     is_constant,
     is_counted,
-    is_polled,
     spent,
     vanishes,
 )
@@ -40,6 +39,7 @@ from tendon_ros.diagnose.judge import (
     stays,
     takes_noise,
 )
+from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
@@ -64,8 +64,8 @@ class Belief:
     are named, with what speaks for them; ``companies``: causes that make up for one another, of
     which the first is named for all. ``accepted``: these and who is named through them.
     ``kept``: the accepted ones, and what spoils nothing beside them. ``early``: who is early where
-    all other sensors are late; those delays are not believed. ``polled``: delays that are believed
-    and not named, since they may be the logger's.
+    all other sensors are late; those delays are not believed. ``logged``: those that are
+    believed and not named, since they may be what a logger makes of a sound sensor.
     """
 
     weighed: tuple[Weighed, ...]
@@ -74,7 +74,7 @@ class Belief:
     accepted: tuple[int, ...]
     kept: tuple[int, ...]
     early: Early | None
-    polled: tuple[int, ...]
+    logged: tuple[int, ...]
 
     def model(self, found: Found, which: Collection[int]) -> Model:
         """
@@ -121,7 +121,8 @@ def belief(ready: Prepared, found: Found) -> Belief:
     ahead = early(problem, final.model)
     less = giving_less(problem, final)
     undone = undoing(problem, final) | absorbed(problem, final, found.without) | less
-    undone |= at_an_end(problem, final, found.without)
+    ends = at_an_end(problem, final, found.without)
+    undone |= ends
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)
@@ -143,17 +144,18 @@ def belief(ready: Prepared, found: Found) -> Belief:
     members = {k for company in together for k in company.members}
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
-    polled = {
+    logged = {
         k
         for k, cause in enumerate(causes)
-        if k not in undone and is_polled(problem, cause, final.model.values(k))
+        if k not in undone and is_logged(problem, cause, final.model.values(k))
     }
-    accepted = members | {*alone} | polled
+    accepted = members | {*alone} | logged
     # fits want them, and what was held out is often a few seconds only: it must speak plainly
     beside = {
         k
         for k, cause in enumerate(causes)
-        if k not in accepted | less  # who only helps a push is of no use without it
+        # who only helps a push is of no use without it, nor is who stands for a stop elsewhere
+        if k not in accepted | less | ends
         and not cause.instants
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
@@ -166,7 +168,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         tuple(sorted(accepted)),
         tuple(sorted(accepted | beside)),
         ahead,
-        tuple(sorted(polled)),
+        tuple(sorted(logged)),
     )
 
 
@@ -230,7 +232,7 @@ def _weighed(ready: Prepared, found: Found, k: int, left: Stays, undone: bool) -
     vague = len({cause.effect} | as_good) > ALIKE or _open(ready.problem, found, k)
     values = found.final.model.values(k)
     vague |= any(
-        is_none(ready.problem, cause, values) for is_none in (is_constant, is_counted, is_polled)
+        is_none(ready.problem, cause, values) for is_none in (is_constant, is_counted, is_logged)
     )
     return Weighed(
         cause=cause,

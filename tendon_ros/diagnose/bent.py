@@ -24,9 +24,6 @@ from tendon_ros.identify.waves import shows, travel
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
-#: of the time between samples within which a delay is the logger's, which reads one register after
-#: the other
-POLLED = 0.5
 #: counts of a motor's encoder up to which a play may be what they make
 COUNTED = 1.5
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
@@ -91,19 +88,6 @@ def _is_tolerated(problem: Problem, candidate: Candidate, values: Mapping[str, f
         p.name in own and own[p.name].low < values[p.name] < own[p.name].high
         for p in candidate.parameters
     )
-
-
-def is_polled(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
-    """
-    Return whether a delay may be that of a logger, which is no fault of the sensor.
-
-    :param problem: the data.
-    :param candidate: an effect.
-    :param values: of its parameters.
-    :return: whether it is one, and below half of the time between samples.
-    """
-    polled = POLLED * max(s.sampling for s in problem.rollouts.segments)
-    return candidate.effect == 'sensor_delay' and values['time'] < polled
 
 
 def is_counted(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tendon_ros.diagnose.begun import Begun
-from tendon_ros.diagnose.bent import degenerate, is_polled
+from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.left_out import rest_of, sets_the_unit
+from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
 from tendon_ros.diagnose.parts import is_part, plain
@@ -201,7 +202,7 @@ class Challenge:
         values = model.values(-1)
         bent = degenerate(self._problem, rival.candidate, values)
         # what is no fault of the rig takes no cause's place
-        bent |= is_polled(self._problem, rival.candidate, values)
+        bent |= is_logged(self._problem, rival.candidate, values)
         return (
             not bent and self._no_excuse(model, state) and plain(self._problem, model, -1) is None
         )

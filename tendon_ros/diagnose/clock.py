@@ -8,12 +8,11 @@ time, and none of them is at fault.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from tendon_ros.base.errors import listed
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
@@ -99,23 +98,6 @@ def early_words(found: Early) -> str:
         f'all sensors but {who} are late by {1e3 * found.time:.0f} ms, which is as much as to say '
         f'that {who} is early: its stamps, or what it reports lags behind when it says so, as the '
         'torque of a slow drive; no delay is named'
-    )
-
-
-def polled_words(model: Model, which: Sequence[int]) -> str:
-    """
-    Say who is late by no more than a logger makes it.
-
-    :param model: causes.
-    :param which: delays among them.
-    :return: a sentence for the report.
-    """
-    who = listed(
-        f'{model.causes[k].place} by {1e3 * model.values(k)["time"]:.1f} ms' for k in which
-    )
-    return (
-        f'late by less than half of the time between samples: {who}; as much as a logger that '
-        'reads one after the other, so it is used and not named'
     )
 
 

@@ -18,7 +18,7 @@ from tendon_ros.diagnose.apart import apart_words, disagreement
 from tendon_ros.diagnose.asking import signed
 from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
-from tendon_ros.diagnose.clock import early_words, polled_words
+from tendon_ros.diagnose.clock import early_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.doubts import (
     absurd_words,
@@ -41,6 +41,7 @@ from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.locate import whereabouts
+from tendon_ros.diagnose.logged import logged_words
 from tendon_ros.diagnose.looks import Looks
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, strained, verdict_of, Weighed
@@ -130,7 +131,7 @@ def diagnose(
     beyond = unexplained(ready, found, believed)
     places = whereabouts(ready, found, held.accepted, believed, left)
     # where there is no gap, there is nothing that anything could stand in for
-    kept = held.kept if held.named or beyond >= NAMED else held.polled
+    kept = held.kept if held.named or beyond >= NAMED else held.logged
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
     final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
@@ -189,8 +190,7 @@ def diagnose(
             *weak_words(heard, final.model),
             *scaled_words(final.model, contested(problem, found)),
             *lost_words(heard, final.model),
-            *brief_words(heard, final.model),
-            *touching,
+            *(touching or brief_words(heard, final.model)),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *([apart_words(differs)] if differs else []),
             *(ended_words(moved) if beyond >= NAMED and not (differs or touching) else []),
@@ -204,7 +204,7 @@ def diagnose(
             *said_of_torque(instrument),
             *held_on,
             *([early_words(held.early)] if held.early else []),
-            *([polled_words(found.final.model, held.polled)] if held.polled else []),
+            *([logged_words(found.final.model, held.logged)] if held.logged else []),
             *([known_words(ready.looser)] if ready.looser > 1.0 else []),
             *([ASTRAY] if astray else []),
             *loops.left_out,

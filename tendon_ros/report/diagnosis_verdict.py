@@ -54,15 +54,15 @@ def beside_words(diagnosis: Diagnosis) -> str:
     :param diagnosis: the answer, with effects that hold although they are not named.
     :return: plain text with numbers.
     """
-    before, after = (number(x) for x in overall(diagnosis))
+    before, after = overall(diagnosis)
     effects = [inside(effect_words(c.effect, c.place)) for c in diagnosis.beside]
     many = len(effects) > 1
     names = joined(effects)
     return (
         f'{names[:1].upper()}{names[1:]} {"hold" if many else "holds"} on what no fit has '
         f'seen, but may stand in for something else. instrument.yaml has '
-        f'{"them" if many else "it"}: with all that it has, the gap of {before} noise deviations '
-        f'shrinks to {after}.'
+        f'{"them" if many else "it"}: with all that it has, the gap of {number(before)} noise '
+        f'deviations {_does(diagnosis)} to {number(after)}.'
     )
 
 
@@ -103,7 +103,7 @@ def headline(diagnosis: Diagnosis) -> str:
     if not diagnosis.causes:
         if not diagnosis.beside:
             return f'Nothing in the catalogue explains the {gap}.{lies}'
-        like = f'What acts like {likenesses(diagnosis.beside)} shrinks'
+        like = f'What acts like {likenesses(diagnosis.beside)} {_does(diagnosis)}'
         if _does_most(diagnosis):
             return (
                 f'{like} the {gap} to {after}, but nothing in the catalogue explains it with any '
@@ -179,7 +179,14 @@ def _does_most(diagnosis: Diagnosis) -> bool:
 
 
 def _shrinks(diagnosis: Diagnosis) -> str:
-    return 'with what is only likely it shrinks' if diagnosis.beside else 'it shrinks'
+    it = 'with what is only likely it' if diagnosis.beside else 'it'
+    return f'{it} {_does(diagnosis)}'
+
+
+def _does(diagnosis: Diagnosis) -> str:
+    """Return what becomes of the gap: what fits where it was fitted may not hold elsewhere."""
+    before, after = overall(diagnosis)
+    return 'shrinks' if after < before else 'grows'
 
 
 def _no_gap(diagnosis: Diagnosis) -> str:

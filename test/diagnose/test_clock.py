@@ -115,5 +115,5 @@ def test_what_a_logger_makes_late_is_used_and_not_named(measured_on):
     diagnosis = diagnose([late], body, plan=False).diagnosis
     assert [(c.effect, c.place) for c in diagnosis.causes] == [('coulomb_friction', 'pulley_body')]
     assert ('sensor_delay', 'torque_body') in [(c.effect, c.place) for c in diagnosis.beside]
-    assert any('late by less than half' in note for note in diagnosis.left_out)
+    assert any('less than half of the time between samples' in note for note in diagnosis.left_out)
     assert diagnosis.verdict == 'explained'

@@ -62,6 +62,8 @@ def test_a_stop_is_no_cause_of_the_catalogue(axis, runs):
     told = diagnose(runs, axis, jobs=1, plan=False).diagnosis
     assert not told.causes
     assert told.verdict == 'unexplained'
+    # nor is it of use where nothing is touched
+    assert all(one.effect != LIMIT.effect for one in told.beside)
     assert any('it touches something there' in said for said in told.doubts)
     # what it takes numbers of the file to says nothing of them
     assert not any('end of its tolerance' in said for said in told.doubts)

@@ -7,7 +7,8 @@ import pytest
 from tendon_ros.bags.importing import import_runs
 from tendon_ros.bags.mapping import load_mapping
 from tendon_ros.base.resources import config_path
-from tendon_ros.diagnose.bent import degenerate, is_polled
+from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
@@ -41,4 +42,4 @@ def test_registers_are_read_one_after_the_other(polled, arm, late, loggers):
     problem = prepared([polled], arm).problem
     delay = Candidate('sensor_delay', 'encoder_arm'), {'time': late}
     assert not degenerate(problem, *delay)
-    assert is_polled(problem, *delay) is loggers
+    assert is_logged(problem, *delay) is loggers

@@ -91,6 +91,15 @@ def test_what_is_not_certain_and_does_most_is_said_first(case):
     assert 'to 7.3, but nothing in the catalogue explains it with any certainty. The' in text
 
 
+def test_a_gap_that_grows_where_nothing_was_fitted_is_said_to(case):
+    diagnosis = case('unexplained')[0]
+    gaps = [g.model_copy(update={'before': g.after, 'after': g.before}) for g in diagnosis.gap]
+    grown = diagnosis.model_copy(update={'gap': tuple(gaps)})
+    assert ' shrinks ' in headline(diagnosis)
+    assert ' shrinks ' not in headline(grown)
+    assert ' grows ' in headline(grown)
+
+
 def test_a_gap_without_a_form_does_not_contradict_itself(case):
     diagnosis, _ = case('no_gap')
     floor = diagnosis.gap[0].noise_floor
