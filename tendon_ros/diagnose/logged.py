@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tendon_ros.base.errors import listed
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+
+FloatArray = NDArray[np.float64]
 
 #: of the time between samples within which a delay is the logger's, which reads one register after
 #: the other
 POLLED = 0.5
+#: part of what an angle that is off does, as power, that is the same as what a count does
+ALIKE = 0.8
+ZERO = 'encoder_offset'
 
 
 def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -22,15 +31,39 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether it is a delay below half of the time between samples, or an angle that is off
-        within a count: a counter that leaves out the rest reads half a count less.
+        within a count: a counter that leaves out the rest reads half a count less. So does
+        whatever a motor turns whose counter does.
     """
     if candidate.effect == 'sensor_delay':
         return values['time'] < POLLED * max(s.sampling for s in problem.rollouts.segments)
-    if candidate.effect != 'encoder_offset':
+    if candidate.effect != ZERO:
         return False
-    sensors = problem.rollouts.instrument.sensors
-    counts = {s.name: s.resolution for s in sensors if s.kind == 'angle'}
-    return abs(values['angle']) < counts.get(candidate.place, 0.0)
+    instrument = problem.rollouts.instrument
+    counts = {s.name: s.resolution for s in instrument.sensors if s.kind == 'angle'}
+    if abs(values['angle']) < counts.get(candidate.place, 0.0):
+        return True
+    motors = [d.sensor.name for d in drives(instrument) if not d.by_torque]
+    does = _change(problem, candidate, values)
+    return any(
+        _within(does, _change(problem, Candidate(ZERO, name), {'angle': counts[name]}))
+        for name in motors
+        if name != candidate.place and counts.get(name, 0.0) > 0.0
+    )
+
+
+def _change(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> FloatArray:
+    """Return what an effect does to each sample, in noise deviations."""
+    begun = problem.begun
+    return problem.left(begun.joined(candidate, values)) - problem.left(begun)
+
+
+def _within(does: FloatArray, count: FloatArray) -> bool:
+    """Return whether a change is what less than a count makes, for most of it."""
+    square, whole = float(count @ count), float(does @ does)
+    if not (square > 0.0 and whole > 0.0):
+        return False
+    pull = float(does @ count)
+    return abs(pull) < square and pull**2 > ALIKE * square * whole
 
 
 def logged_words(model: Model, which: Sequence[int]) -> str:
@@ -48,5 +81,6 @@ def logged_words(model: Model, which: Sequence[int]) -> str:
             late = f'{place} is late by {1e3 * values["time"]:.1f} ms'
             said.append(f'{late}, less than half of the time between samples')
         else:
-            said.append(f'{place} reads {1e3 * values["angle"]:.2g} mrad off, within a count')
+            off = f'{place} reads {1e3 * values["angle"]:.2g} mrad off'
+            said.append(f'{off}, within a count of the encoders')
     return f'{listed(said)}: as much as a logger makes of a sound sensor, so it is used, not named'

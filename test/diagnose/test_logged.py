@@ -9,9 +9,27 @@ from tendon_ros.diagnose.logged import is_logged, logged_words
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.model.instrument_file import load_instrument
 
 INNER = 'pulley/pulley_2/position'
 COUNT = 2.0 * np.pi / 16384
+STAGE = """
+pulleys:
+  motor: {inertia: 3e-5 kg*m^2, damping: 2e-4 N*m*s/rad}
+  carriage: {inertia: 2e-4 kg*m^2, damping: 1e-3 N*m*s/rad}
+curves:
+  belt: {elongation: {mm: [0, 5]}, tension: {N: [0, 500]}}
+loops:
+  belt: {route: {motor: 12 mm, carriage: -12 mm}, curve: belt, pretension: 100 N}
+motors:
+  motor:
+    controller: {kp: 2 N*m/rad, kd: 0.03 N*m*s/rad, limit: 1 N*m}
+    encoder: {counts: 1000}
+    torque_sensor: {noise: 2e-3 N*m}
+joint_sensors:
+  carriage: {counts: 100000}
+control: {rate: 1 kHz}
+"""
 ZERO = Candidate('encoder_offset', 'encoder_2')
 
 
@@ -22,6 +40,20 @@ def test_an_angle_that_is_off_within_a_count_is_no_fault(bench, measured_on, cou
     model = problem.empty.joined(ZERO, {'angle': counts * COUNT})
     words = logged_words(model, [0])
     assert words.startswith(f'encoder_2 reads {1e3 * counts * COUNT:.2g} mrad off, within a count')
+
+
+@pytest.mark.parametrize(('counts', 'loggers'), [(0.5, True), (-0.5, True), (3.0, False)])
+def test_a_motor_whose_counter_cuts_off_shifts_what_it_turns(
+    measured_on, tmp_path, counts, loggers
+):
+    """A fine scale at the carriage sees that the coarse count of the motor leaves out the rest."""
+    file = tmp_path / 'stage.yaml'
+    file.write_text(STAGE)
+    stage = load_instrument(file)
+    problem = prepared([measured_on(stage)], stage).problem
+    scale = Candidate('encoder_offset', 'encoder_carriage')
+    # wheels of one size, so that a count of the motor moves the carriage by as much
+    assert is_logged(problem, scale, {'angle': counts * np.radians(0.36)}) is loggers
 
 
 @pytest.mark.parametrize('counts', [-0.6, -6.0])
