@@ -16,6 +16,7 @@ from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import is_part, widened
 from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway
 from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
@@ -63,6 +64,31 @@ class Begun:
             if is_part(cause, p.candidate)
         ]
         return self._instead(state, cause, begun, *(BRIEF if brief else CAREFUL))
+
+    def narrower(self, state: Fit, cause: Candidate, *, brief: bool = False) -> list[Rival]:
+        """
+        Return the fits of effects that are part of the cause's, which begin from what it found.
+
+        Friction by direction has made up for what else has moved to go along with it: a plain one
+        is fitted from where that stands, and not given up halfway. What the file has of it is
+        beside the cause, and so part of the plain one.
+
+        :param state: with the cause.
+        :param cause: which one.
+        :param brief: whether only fits matter that are far better.
+        :return: the fits.
+        """
+        values = state.model.values(state.model.causes.index(cause))
+        begun = []
+        for candidate in self._steps.candidates:
+            held = find(cause.effect).holds.get(candidate.effect, ())
+            if candidate.place != cause.place or not held or candidate in state.model.causes:
+                continue
+            [size] = candidate.parameters
+            mean = float(np.mean([values[name] for name in held]))
+            begun.append((candidate, {size.name: size.neutral + mean}))
+        how = BRIEF if brief else CAREFUL
+        return self._instead(state, cause, begun, *how, anew=True)
 
     def elsewhere(
         self, state: Fit, cause: Candidate, among: Sequence[Candidate] | None
@@ -167,10 +193,16 @@ class Begun:
         begun: Sequence[tuple[Candidate, dict[str, float]]],
         rounds: int = CAREFUL[0],
         accuracy: float = CAREFUL[1],
+        *,
+        anew: bool = False,
     ) -> list[Rival]:
-        """Return fits of candidates in the place of a cause, from where each begins."""
+        """
+        Return fits of candidates in the place of a cause, from where each begins.
+
+        ``anew``: with derivatives of their own, where others have to move far.
+        """
         rest = state.model.without(state.model.causes.index(cause))
-        known = self._problem.slopes(state)
+        known = None if anew else self._problem.slopes(state)
 
         def one(begin: tuple[Candidate, dict[str, float]]) -> Rival:
             # when it was is found once it comes near

@@ -17,7 +17,7 @@ from tendon_ros.diagnose.left_out import rest_of, sets_the_unit
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
-from tendon_ros.diagnose.parts import is_part, plain
+from tendon_ros.diagnose.parts import is_part, is_plainer, plain
 from tendon_ros.diagnose.rivals import (
     BETTER,
     CLOSE,
@@ -185,6 +185,7 @@ class Challenge:
         brief = brief or hopeless(self._problem, found.start, found.final)
         rivals = self._steps.fitted(without, proposals, missed, cause.effect, brief=brief)
         begun = self._begun.wider(found.final, cause, proposals, brief=brief)
+        begun += self._begun.narrower(found.final, cause, brief=brief)
         if not brief:
             begun += self._begun.elsewhere(found.final, cause, among)
             begun += self._begun.homed_again(found.final, cause)
@@ -248,9 +249,10 @@ class Challenge:
             ahead = (state.cost - fit.cost) / len(state.left)
             # a law that holds another is never worse: it pays for its parameters, or that other
             # one is named, and it among those that cannot be told from it
-            if is_part(rival, cause):
+            if is_part(rival, cause) or is_plainer(rival, cause):
                 return not pays(self._problem, state, fit)
-            if is_part(cause, rival) and not pays(self._problem, fit, state):
+            held = is_part(cause, rival) or is_plainer(cause, rival)
+            if held and not pays(self._problem, fit, state):
                 return False
             if more < 0:
                 return as_good(self._problem, fit, state)

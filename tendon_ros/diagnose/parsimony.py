@@ -12,7 +12,7 @@ from tendon_ros.identify.fit import Fit, Problem
 AHEAD = 4.0
 
 
-def criterion(problem: Problem, fit: Fit) -> float:
+def criterion(problem: Problem, fit: Fit, *, bare: bool = False) -> float:
     """
     Return Bayes' information criterion, the smaller the better.
 
@@ -20,10 +20,12 @@ def criterion(problem: Problem, fit: Fit) -> float:
 
     :param problem: the data.
     :param fit: a state.
+    :param bare: whether it costs nothing to contradict what the file has measured.
     :return: its criterion; only differences of states on the same data mean anything.
     """
     seconds = 1.0 + float(problem.clusters(CLUSTER).max(initial=0))
-    parameters = sum(cause.price for cause in fit.model.causes)
+    causes = fit.model.causes
+    parameters = sum(len(c.parameters) if bare else c.price for c in causes)
     return seconds * math.log(fit.cost / len(fit.left)) + parameters * math.log(seconds)
 
 
@@ -54,5 +56,6 @@ def pays(problem: Problem, wider: Fit, simpler: Fit) -> bool:
     :return: whether it is the better bet, or ahead by far more than a tie.
     """
     ahead = (simpler.cost - wider.cost) / len(wider.left)
-    bet = criterion(problem, wider) < criterion(problem, simpler)
+    # what is added to a friction of the file contradicts it as well
+    bet = criterion(problem, wider, bare=True) < criterion(problem, simpler, bare=True)
     return bet or ahead > AHEAD * tie(problem, wider)

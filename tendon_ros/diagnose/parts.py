@@ -57,6 +57,18 @@ def is_part(part: Candidate, whole: Candidate) -> bool:
     return alike and part.effect in find(whole.effect).holds
 
 
+def is_plainer(plain: Candidate, more: Candidate) -> bool:
+    """
+    Return whether an effect of the file, of another size, is a special case of it and another.
+
+    :param plain: stands instead of the file's.
+    :param more: acts beside the file's.
+    :return: whether the law of what is beside holds that of the file's.
+    """
+    alike = plain.place == more.place and bool(plain.given) and not more.given
+    return alike and plain.effect in find(more.effect).holds
+
+
 def widened(
     shape: Mapping[str, float], whole: Candidate, simple: Mapping[str, float], part: Candidate
 ) -> dict[str, float]:

@@ -50,22 +50,26 @@ def test_no_simpler_cause_takes_the_place_of_one_that_is_a_better_bet(
     assert not as_good(problem, simple, replace(rich, cost=0.99 * simple.cost))
 
 
+@pytest.mark.parametrize('given', [(), (('torque', 0.02),)])
 @pytest.mark.parametrize(
     ('more', 'named'), [(0.3, Candidate('asymmetric_friction', 'pulley_3')), (0.04, COULOMB)]
 )
-def test_a_law_that_holds_another_pays_for_itself(bench, measured_on, more, named):
+def test_a_law_that_holds_another_pays_for_itself(bench, measured_on, more, named, given):
     """Friction that differs by a little is a fact of these data, and none of the machine."""
     whole = Candidate('asymmetric_friction', 'pulley_3')
+    # the file may have some of it, and say how well it knows how much: it is wrong either way
+    plain = replace(COULOMB, given=given, stated=bool(given))
+    named = plain if named == COULOMB else named
     run = measured_on(bench, (COULOMB.effect, COULOMB.place, {'torque': 0.2}))
     problem = prepared([run], bench).problem
-    steps = Steps(problem, [COULOMB, whole], 1, lambda *_: None)
+    steps = Steps(problem, [plain, whole], 1, lambda *_: None)
     start = problem.fitted(problem.empty)
     found = Found(proposals=best_of(steps.screened(Screen(problem, start))))
     model = problem.empty.joined(whole, {'forward': 0.22, 'backward': 0.18})
-    simple = problem.fitted(problem.empty.joined(COULOMB, {'torque': 0.2}))
+    simple = problem.fitted(problem.empty.joined(plain, {'torque': 0.2}))
     rich = problem.fitted(model)
     found.states += [start, replace(rich, cost=simple.cost - more * len(rich.left))]
     challenge = Challenge(steps, {})
-    rivals = [Rival(COULOMB, simple)]
+    rivals = [Rival(plain, simple)]
     better = challenge._better(found, whole, start, rivals, brief=True)
     assert (whole if better is None else better.model.causes[0]) == named

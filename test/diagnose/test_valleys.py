@@ -9,7 +9,7 @@ from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import valleys
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.diagnose.valleys import nudged, waved
+from tendon_ros.diagnose.valleys import nudged, touched, waved
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -43,12 +43,37 @@ def test_guesses_get_out_of_a_valley_in_which_one_cable_is_soft_for_another():
     assert not out.model.causes
 
 
+def test_a_stop_whose_place_is_guessed_is_found_where_it_is(measured_on):
+    """A stiff one: its torque tells of its place within milliradians only."""
+    axis = load_instrument('driven_axis')
+    [hand] = axis.contacts
+    axis = replace(
+        axis,
+        tolerances=axis.tolerances | {'contact.position': np.inf, 'contact.stiffness': np.inf},
+    )
+    file = replace(axis, contacts=(replace(hand, position=0.216, stiffness=6e4, enabled=True),))
+    there = replace(axis, contacts=(replace(hand, position=0.2, stiffness=4e4),))
+    settings = (('duration', '8 s'), ('amplitude', '25 deg'))
+    problem = prepared([measured_on(there, settings=settings, touching=True)], file).problem
+    steps = Steps(problem, [], 1, lambda *_: None)
+    stuck = steps.settled(problem.begun)
+    found = touched(steps, stuck)
+    [at] = [
+        t.axis.value(float(z))
+        for t, z in zip(problem.tolerances, found.model.moved, strict=True)
+        if t.quantity == 'position'
+    ]
+    assert found.cost < 0.5 * stuck.cost
+    assert at == pytest.approx(-0.016, abs=2e-3)
+
+
 def test_nothing_is_nudged_where_nothing_is_guessed(bench, measured_on):
     softer = ('cable_stiffness', 'cable_12', {'scale': 0.6})
     run = measured_on(bench, softer, touching=True, trajectory='paper_fig12', settings=())
     problem = prepared([run], bench).problem
     start = problem.fitted(problem.empty)
-    assert nudged(Steps(problem, [], 1, lambda *_: None), start) is start
+    steps = Steps(problem, [], 1, lambda *_: None)
+    assert nudged(steps, start) is touched(steps, start) is start
 
 
 def test_a_ripple_gets_out_of_a_number_of_waves_that_is_not_its_own():
