@@ -50,8 +50,13 @@ class End:
 
     @property
     def words(self) -> str:
-        """Where it is, in words."""
-        return f'pulley_{self.pulley} is at {self.angle:.3g} rad in {listed(self.recordings)}'
+        """What it is to say that all that stays lies there."""
+        return (
+            f'all that stays of the gap lies where pulley_{self.pulley} is at {self.angle:.3g} '
+            f'rad in {listed(self.recordings)}, and no further: it touches something there that '
+            'the file does not have (a stop, a hand, a cable that is in the way). Give it to the '
+            'file as a contact, or record without it; numbers were fitted without these moments'
+        )
 
 
 def at_an_end(problem: Problem, final: Fit, without: Sequence[Fit]) -> frozenset[int]:
@@ -83,27 +88,23 @@ def at_an_end(problem: Problem, final: Fit, without: Sequence[Fit]) -> frozenset
     return frozenset(found)
 
 
-def end_words(problem: Problem, state: Fit) -> list[str]:
+def end_of_all(problem: Problem, state: Fit) -> End | None:
     """
-    Say at which end of a pulley's range all lies that stays of a gap.
+    Return the end of a pulley's range at which all lies that stays of a gap.
 
     :param problem: the data.
     :param state: the fit of what is believed.
-    :return: a sentence, if there is such an end.
+    :return: the end; None where there is none, or nothing stays.
     """
     stays = problem.structured(state.left)
     if stays < WHERE:
-        return []
+        return None
     for end in _with_much(problem, _ends(problem, state.model), state.left**2):
         one = problem.leaving_out(end.bins)
         rest = one.fitted(state.model, rounds=8, accuracy=1e-2)
         if one.structured(rest.left) < ELSEWHERE * stays:
-            return [
-                f'all that stays of the gap lies where {end.words}, and no further: it touches '
-                'something there that the file does not have (a stop, a hand, a cable that is in '
-                'the way). Give it to the file as a contact, or record without it'
-            ]
-    return []
+            return end
+    return None
 
 
 def _ends(problem: Problem, model: Model) -> Iterator[End]:

@@ -18,6 +18,8 @@ FloatArray = NDArray[np.float64]
 #: of the time between samples within which a delay is the logger's, which reads one register after
 #: the other
 POLLED = 0.5
+#: counts within which several counters that each cut off half a one may make an angle be off
+COUNTED = 1.5
 #: part of what an angle that is off does, as power, that is the same as what a count does
 ALIKE = 0.8
 ZERO = 'encoder_offset'
@@ -31,7 +33,7 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether it is a delay below half of the time between samples, or an angle that is off
-        within a count: a counter that leaves out the rest reads half a count less. So does
+        by a count or so: a counter that leaves out the rest reads half a count less. So does
         whatever a motor turns whose counter does.
     """
     if candidate.effect == 'sensor_delay':
@@ -40,7 +42,7 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
         return False
     instrument = problem.rollouts.instrument
     counts = {s.name: s.resolution for s in instrument.sensors if s.kind == 'angle'}
-    if abs(values['angle']) < counts.get(candidate.place, 0.0):
+    if abs(values['angle']) < COUNTED * counts.get(candidate.place, 0.0):
         return True
     motors = [d.sensor.name for d in drives(instrument) if not d.by_torque]
     does = _change(problem, candidate, values)
@@ -58,12 +60,12 @@ def _change(problem: Problem, candidate: Candidate, values: Mapping[str, float])
 
 
 def _within(does: FloatArray, count: FloatArray) -> bool:
-    """Return whether a change is what less than a count makes, for most of it."""
+    """Return whether a change is what a count or so makes, for most of it."""
     square, whole = float(count @ count), float(does @ does)
     if not (square > 0.0 and whole > 0.0):
         return False
     pull = float(does @ count)
-    return abs(pull) < square and pull**2 > ALIKE * square * whole
+    return abs(pull) < COUNTED * square and pull**2 > ALIKE * square * whole
 
 
 def logged_words(model: Model, which: Sequence[int]) -> str:
@@ -82,5 +84,5 @@ def logged_words(model: Model, which: Sequence[int]) -> str:
             said.append(f'{late}, less than half of the time between samples')
         else:
             off = f'{place} reads {1e3 * values["angle"]:.2g} mrad off'
-            said.append(f'{off}, within a count of the encoders')
+            said.append(f'{off}, a count of the encoders or so')
     return f'{listed(said)}: as much as a logger makes of a sound sensor, so it is used, not named'

@@ -32,7 +32,7 @@ from tendon_ros.diagnose.doubts import (
     unheard_words,
     weak_words,
 )
-from tendon_ros.diagnose.ends import end_words
+from tendon_ros.diagnose.ends import end_of_all
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps, offs
@@ -134,7 +134,12 @@ def diagnose(
     kept = held.kept if held.named or beyond >= NAMED else held.logged
     model = held.model(found, kept)
     heard = ready.heard_again(model).unleant()
-    final = heard.problem.fitted(model, rounds=6, accuracy=1e-4)
+    # nor do numbers have to make up for what is touched where the file has nothing
+    end = end_of_all(problem, believed)
+    clear = heard.problem.leaving_out(end.bins) if end else heard.problem
+    final = clear.fitted(model, rounds=6, accuracy=1e-4)
+    if end:
+        final = heard.problem.fitted(final.model, rounds=0)
     file = heard.problem.written
     # numbers that went along with something unknown say nothing of the machine
     astray = not kept and foretells(heard.held, final.model, file)
@@ -162,7 +167,6 @@ def diagnose(
     others = [*gather.alternatives(problem, found, held), *gather.read_right(heard, final)]
     moved = gather.moved(heard.problem, final, others)
     differs = disagreement(heard, final, asked, beyond)
-    touching = end_words(problem, believed)
     diagnosis = Diagnosis(
         verdict=verdict,
         gap=channels,
@@ -190,10 +194,10 @@ def diagnose(
             *weak_words(heard, final.model),
             *scaled_words(final.model, contested(problem, found)),
             *lost_words(heard, final.model),
-            *(touching or brief_words(heard, final.model)),
+            *([end.words] if end else brief_words(heard, final.model)),
             *absurd_words([m for m in moved if m.quantity in SCALING]),
             *([apart_words(differs)] if differs else []),
-            *(ended_words(moved) if beyond >= NAMED and not (differs or touching) else []),
+            *(ended_words(moved) if beyond >= NAMED and not (differs or end) else []),
             *(loud_words(heard) if settled else []),
             *(coarse_words(heard, much=True) if verdict == 'no_gap' else []),
         ),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose.ends import at_an_end, end_words
+from tendon_ros.diagnose.ends import at_an_end, end_of_all
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.session import diagnose
 from tendon_ros.identify.candidate import Candidate
@@ -42,9 +42,9 @@ def test_a_torque_limit_that_only_a_stop_asks_for_is_none(axis, runs):
     final = problem.fitted(problem.empty.joined(LIMIT, {'limit': 0.5, 'knee': 0.1}), rounds=12)
     assert final.cost < 0.2 * start.cost
     assert at_an_end(problem, final, [start]) == {0}
-    [said] = end_words(problem, start)
-    assert 'where pulley_axis is at 0.2' in said
-    assert 'rad in stopped, and no further' in said
+    end = end_of_all(problem, start)
+    assert (end.pulley, end.recordings) == ('axis', ('stopped',))
+    assert end.angle == pytest.approx(np.radians(12.0), abs=0.01)
 
 
 def test_a_limit_is_met_wherever_the_torque_is(axis, measured_on):
@@ -55,15 +55,17 @@ def test_a_limit_is_met_wherever_the_torque_is(axis, measured_on):
     final = problem.fitted(problem.empty.joined(LIMIT, {'limit': 0.03, 'knee': 0.005}), rounds=12)
     assert final.cost < 0.5 * start.cost
     assert not at_an_end(problem, final, [start])
-    assert not end_words(problem, start)
+    assert end_of_all(problem, start) is None
 
 
 def test_a_stop_is_no_cause_of_the_catalogue(axis, runs):
-    told = diagnose(runs, axis, jobs=1, plan=False).diagnosis
+    out = diagnose(runs, axis, jobs=1, plan=False)
+    told = out.diagnosis
     assert not told.causes
     assert told.verdict == 'unexplained'
     # nor is it of use where nothing is touched
     assert all(one.effect != LIMIT.effect for one in told.beside)
     assert any('it touches something there' in said for said in told.doubts)
-    # what it takes numbers of the file to says nothing of them
+    # numbers of the file do not make up for it
     assert not any('end of its tolerance' in said for said in told.doubts)
+    assert all(abs(one.off) < 1.0 for one in out.evidence.moved if one.quantity == 'inertia')

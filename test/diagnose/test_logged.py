@@ -33,13 +33,13 @@ control: {rate: 1 kHz}
 ZERO = Candidate('encoder_offset', 'encoder_2')
 
 
-@pytest.mark.parametrize(('counts', 'loggers'), [(0.6, True), (-0.6, True), (3.0, False)])
+@pytest.mark.parametrize(('counts', 'loggers'), [(0.6, True), (-1.2, True), (3.0, False)])
 def test_an_angle_that_is_off_within_a_count_is_no_fault(bench, measured_on, counts, loggers):
     problem = prepared([measured_on(bench)], bench).problem
     assert is_logged(problem, ZERO, {'angle': counts * COUNT}) is loggers
     model = problem.empty.joined(ZERO, {'angle': counts * COUNT})
     words = logged_words(model, [0])
-    assert words.startswith(f'encoder_2 reads {1e3 * counts * COUNT:.2g} mrad off, within a count')
+    assert words.startswith(f'encoder_2 reads {1e3 * counts * COUNT:.2g} mrad off, a count of')
 
 
 @pytest.mark.parametrize(('counts', 'loggers'), [(0.5, True), (-0.5, True), (3.0, False)])
