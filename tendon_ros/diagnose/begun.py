@@ -79,10 +79,12 @@ class Begun:
         :return: the fits.
         """
         values = state.model.values(state.model.causes.index(cause))
-        begun = []
+        begun: list[tuple[Candidate, dict[str, float]]] = []
+        if cause.given:  # without it, what the file has is there again
+            return []
         for candidate in self._steps.candidates:
             held = find(cause.effect).holds.get(candidate.effect, ())
-            if candidate.place != cause.place or not held or candidate in state.model.causes:
+            if not held or candidate.place != cause.place or candidate in state.model.causes:
                 continue
             [size] = candidate.parameters
             mean = float(np.mean([values[name] for name in held]))
@@ -157,9 +159,7 @@ class Begun:
         # guesses that have moved to do without one friction hide that another does as well
         if any(t.guessed for t in self._problem.tolerances):
             far += [
-                c
-                for c in self._steps.candidates
-                if any(alike(c, one) for one in (cause, *close)) and c not in {cause, *close, *far}
+                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
             ]
         rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
         if rest is None:

@@ -54,7 +54,7 @@ class Comparison:
     measured: FloatArray
     expected: FloatArray
     constant: bool
-    noise: bool = False
+    noise: bool
 
     @property
     def expected_strong(self) -> bool:
