@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> None:
 
     path = find_instrument(args.instrument)
     one = load_instrument(path)
-    print(f'{path}: {one.name} is sound' + (f' ({one.description})' if one.description else ''))
+    print(f'{path}: {one.name} is valid' + (f' ({one.description})' if one.description else ''))
     parts = {
         'pulley': one.pulleys,
         'motor': one.motors,

@@ -9,12 +9,13 @@ from textwrap import wrap
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.result import Cause, ChannelGap, Diagnosis
 from tendon_ros.diagnose.together import alone
-from tendon_ros.report.diagnosis_sums import by_place, in_floors
+from tendon_ros.report.diagnosis_sums import by_place, in_floors, overall
 from tendon_ros.report.diagnosis_together import together
 from tendon_ros.report.diagnosis_verdict import (
     beside_words,
     headline,
     LIKELY,
+    MUCH,
     rest_words,
     sizes,
     worth,
@@ -35,6 +36,7 @@ from tendon_ros.report.diagnosis_words import (
 _WIDTH = 96
 _INDENT = 8
 _PLACES, _CAUSES, _CHANNELS, _NUMBERS, _NEXT = 3, 4, 6, 6, 2
+_SOME = 1.0  # deviations by which a number moves that has taken up a gap
 
 
 def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
@@ -43,7 +45,7 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
 
     :param diagnosis: the answer.
     :param moved: numbers of the file as they were fitted; guesses, and what was measured and has
-        moved far, are told.
+        moved far, are told, and what has moved at all where that is what became of a gap.
     :return: plain text, lines of at most 96 characters, ending in a newline.
     """
     lines = wrap(headline(diagnosis), _WIDTH)
@@ -59,7 +61,10 @@ def summary(diagnosis: Diagnosis, moved: Sequence[Moved] = ()) -> str:
     )
     if diagnosis.verdict != 'no_gap':
         lines += _part('rest', _rest(diagnosis))
-    lines += _numbers([number for number in moved if number.guessed or number.strained])
+    taken = diagnosis.verdict == 'no_gap' and overall(diagnosis)[0] > MUCH
+    lines += _numbers(
+        [one for one in moved if one.guessed or one.strained or (taken and one.off > _SOME)]
+    )
     if diagnosis.beside:
         lines += _part('beside', [beside_words(diagnosis)])
     lines += _part('next', [_next(n.do, n.add_channel) for n in diagnosis.next_experiment[:_NEXT]])

@@ -43,7 +43,7 @@ CLEARLY, LIKELY = 1.3, 0.5
 #: verdict has to say first
 MOST = 0.5
 
-_MUCH = 1.5  # noise deviations that a reader would call a gap
+MUCH = 1.5  # noise deviations that a reader would call a gap
 _NAMED = 3  # more effects than that make a sentence unreadable
 
 
@@ -197,17 +197,17 @@ def _no_gap(diagnosis: Diagnosis) -> str:
     name = channel_words(worst.channel)
     before, after = in_floors(worst)
     off = number(before)
-    if before > _MUCH and after < 0.5 * before:
+    if before > MUCH and after < 0.5 * before:
         return (
             f'No gap that has a cause: with the numbers of the file {name} is off by {off} noise '
             f'deviations, and by {number(after)} once what is guessed, or within its tolerance, '
             'is fitted.'
         )
-    if before > _MUCH:
+    if before > MUCH:
         return (
             f'No gap that has a form: {name} is off by {off} noise deviations, {number(after)} '
-            'once numbers are fitted within their tolerances, but of what is left, samples beside '
-            'each other share no more than laws of the file may be wrong by.'
+            'once numbers are fitted within their tolerances, but what is left is like noise, or '
+            'no more than the laws of the file may be wrong by.'
         )
     if len(diagnosis.gap) == 1:
         return f'No gap: {name} is off by {off} noise deviations.'

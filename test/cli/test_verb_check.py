@@ -11,7 +11,7 @@ from tendon_ros.cli.main import main
 )
 def test_every_installed_instrument_is_sound(name, capsys):
     assert main(['check', name]) == 0
-    assert f'{name} is sound' in capsys.readouterr().out
+    assert f'{name} is valid' in capsys.readouterr().out
 
 
 def test_summary_of_the_papers_rig(capsys):

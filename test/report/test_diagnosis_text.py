@@ -217,6 +217,17 @@ def test_guesses_are_told_with_what_became_of_them(case):
     assert 'a guess' not in summary(diagnosis, evidence.moved)
 
 
+def test_what_has_taken_up_a_gap_is_told(case):
+    diagnosis, evidence = case('no_gap')
+    moved = [replace(evidence.moved[0], off=1.4), *evidence.moved[1:]]
+    assert 'inertia of pulley 3' not in summary(diagnosis, moved).replace('\u00a0', ' ')
+    gaps = [g.model_copy(update={'before': 3.0 * g.noise_floor}) for g in diagnosis.gap]
+    wide = diagnosis.model_copy(update={'gap': tuple(gaps)})
+    text = summary(wide, moved).replace('\u00a0', ' ')
+    assert 'inertia of pulley 3' in text
+    assert 'pretension of cable' not in text
+
+
 def test_what_was_measured_and_has_moved_far_is_told_first(case):
     diagnosis, evidence = case('three_causes')
     inertia, preload, *_ = evidence.moved
