@@ -23,10 +23,8 @@ from tendon_ros.diagnose.closed_loop import closed_loop_gap
 from tendon_ros.diagnose.doubts import (
     absurd_words,
     brief_words,
-    coarse_words,
     ended_words,
     lost_words,
-    loud_words,
     scaled_words,
     SCALING,
     unheard_words,
@@ -37,6 +35,7 @@ from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps, offs
 from tendon_ros.diagnose.held import as_set
+from tendon_ros.diagnose.hidden import coarse_words, loud_words
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intervals import unsized

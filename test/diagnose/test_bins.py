@@ -6,7 +6,7 @@ import pytest
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.diagnose import bins as on_bins
 from tendon_ros.diagnose.bins import in_bins
-from tendon_ros.diagnose.doubts import coarse_words, loud_words
+from tendon_ros.diagnose.hidden import coarse_words, loud_words
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.model.instrument_file import load_instrument
 
