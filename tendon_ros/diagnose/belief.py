@@ -119,10 +119,9 @@ def belief(ready: Prepared, found: Found) -> Belief:
     problem, final = ready.problem, found.final
     causes = final.model.causes
     ahead = early(problem, final.model)
-    less = giving_less(problem, final)
-    undone = undoing(problem, final) | absorbed(problem, final, found.without) | less
-    ends = at_an_end(problem, final, found.without)
-    undone |= ends
+    # what a motor does for a while, or a pulley where it touches something
+    local = giving_less(problem, final) | at_an_end(problem, final, found.without)
+    undone = undoing(problem, final) | absorbed(problem, final, found.without) | local
     undone |= ahead.late if ahead else frozenset()
     undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
     rest = _without(ready, found, undone)
@@ -155,7 +154,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         k
         for k, cause in enumerate(causes)
         # who only helps a push is of no use without it, nor is who stands for a stop elsewhere
-        if k not in accepted | less | ends
+        if k not in accepted | local
         and not cause.instants
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small

@@ -24,7 +24,8 @@ from tendon_ros.identify.waves import shows, travel
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
-#: counts of a motor's encoder up to which a play may be what they make
+#: counts of encoders up to which a play of a motor, or an angle that is off, may be what they
+#: make: several counters may each cut off half a one
 COUNTED = 1.5
 #: part of a driven pulley's travel over which friction builds up at most: what yields no sooner is
 #: a spring

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.base.errors import listed
+from tendon_ros.diagnose.bent import COUNTED
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
@@ -18,8 +19,6 @@ FloatArray = NDArray[np.float64]
 #: of the time between samples within which a delay is the logger's, which reads one register after
 #: the other
 POLLED = 0.5
-#: counts within which several counters that each cut off half a one may make an angle be off
-COUNTED = 1.5
 #: part of what an angle that is off does, as power, that is the same as what a count does
 ALIKE = 0.8
 ZERO = 'encoder_offset'

@@ -9,14 +9,13 @@ waves has a valley for each.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.worth import open_question
-from tendon_ros.identify.afar import afar, aside
+from tendon_ros.identify.afar import afar, aside, shifted
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.residuals import FEW
@@ -67,12 +66,8 @@ def touched(steps: Steps, state: Fit) -> Fit:
     for n, t in enumerate(problem.tolerances):
         if not (t.guessed and t.quantity == 'position' and open_question(problem, state)):
             continue
-        begun = []
-        for off in (way * by for by in ASIDE for way in (-1.0, 1.0)):
-            moved = state.model.moved.copy()
-            moved[n] = t.axis.place(t.axis.value(float(moved[n])) + off)
-            begun.append(replace(state.model, moved=moved))
-        rough = _rough(steps, problem, begun, rounds=8)
+        offs = [way * by / t.axis.scale for by in ASIDE for way in (-1.0, 1.0)]
+        rough = _rough(steps, problem, shifted(problem, state.model, n, offs), rounds=8)
         ended = _ended(steps, rough, steps.settled)
         if ended is not None and ended.cost < NUDGED * state.cost:
             state = ended

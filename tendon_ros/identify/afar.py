@@ -10,6 +10,7 @@ looked over by itself.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -106,12 +107,28 @@ def aside(problem: Problem, model: Model) -> list[Model]:
     for n, t in enumerate(problem.tolerances):
         if not t.guessed or t.given:
             continue
-        low, high = t.axis.ends
-        for way in (-1.0, 1.0):
+        found += shifted(problem, model, n, (-1.0, 1.0))
+    return found
+
+
+def shifted(problem: Problem, model: Model, n: int, steps: Sequence[float]) -> list[Model]:
+    """
+    Return a model with one of its numbers moved.
+
+    :param problem: the data.
+    :param model: where to begin.
+    :param n: which of the tolerances.
+    :param steps: on its axis, shape (steps,).
+    :return: a model for each step that ends within the axis.
+    """
+    low, high = problem.tolerances[n].axis.ends
+    places = [float(model.moved[n]) + step for step in steps]
+    found = []
+    for place in places:
+        if low <= place <= high:
             moved = model.moved.copy()
-            moved[n] += way
-            if low <= moved[n] <= high:
-                found.append(replace(model, moved=moved))
+            moved[n] = place
+            found.append(replace(model, moved=moved))
     return found
 
 

@@ -70,10 +70,14 @@ class Comparison:
         return bool(self.expected.std() > small)
 
     @property
-    def blind(self) -> bool:
-        """Whether the sensor shows noise where the model expects far more of it."""
-        strong = self.expected_visible and self.factor < NOTHING
-        return self.noise and not self.constant and strong
+    def unmoved(self) -> bool:
+        """Whether nothing of a motion shows in it."""
+        return self.constant or self.noise
+
+    @property
+    def silent(self) -> bool:
+        """Whether nothing shows in it where the model expects far more."""
+        return self.unmoved and self.expected_visible and self.factor < NOTHING
 
     @property
     def telling(self) -> bool:
@@ -110,7 +114,7 @@ class Expectation:
     @property
     def agreement(self) -> float:
         """Mean size of the correlation of all channels that vary."""
-        varying = [c for c in self.comparisons.values() if not (c.constant or c.noise)]
+        varying = [c for c in self.comparisons.values() if not c.unmoved]
         return float(np.mean([abs(c.correlation) for c in varying])) if varying else 0.0
 
 

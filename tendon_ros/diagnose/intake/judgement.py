@@ -42,14 +42,11 @@ def judged(name: str, runs: Sequence[Expectation]) -> Finding | None:
     if run is None:
         return UNTOLD
     one = run.comparisons[name]
-    if one.constant:
-        return _dead(name, run, runs)
-    if one.noise and _blind(name, run, runs):
-        return Finding(
-            f'it stays at {float(one.measured.mean()):.3g} but for noise where the motion should '
-            f'change it by {float(np.ptp(one.expected)):.3g}: the sensor is dead or unplugged; '
-            'mend it'
-        )
+    if one.unmoved:
+        dead = _dead(name, run, runs)
+        # what is noise from one sample to the next may still tell, once that is smoothed
+        if dead is not UNTOLD or one.constant:
+            return dead
     if not one.telling:
         return UNTOLD
     r, factor = one.correlation, one.factor
@@ -131,23 +128,16 @@ def _sign_is_sure(name: str, one: Comparison, run: Expectation) -> bool:
     return spent(one.measured, angle) < -WORK and spent(one.expected, angle) > WORK
 
 
-def _dead(name: str, run: Expectation, runs: Sequence[Expectation]) -> Finding | None:
-    """Judge a channel that does not change."""
-    one = run.comparisons[name]
-    supported = run.agreement > SUPPORT
-    expected = [r.comparisons[name].expected_visible for r in runs if name in r.comparisons]
-    if one.expected_visible if supported else all(expected):
-        return Finding(
-            f'it stays at {float(one.measured[0]):.4g} where the motion should change it by '
-            f'{float(np.ptp(one.expected)):.3g}: the sensor is dead or unplugged; mend it'
-        )
-    return UNTOLD
-
-
-def _blind(name: str, run: Expectation, runs: Sequence[Expectation]) -> bool:
-    """Return whether a channel of noise alone should show more."""
+def _dead(name: str, run: Expectation, runs: Sequence[Expectation]) -> Finding:
+    """Judge a channel that does not change, or by noise alone."""
     one = run.comparisons[name]
     # a load that nothing touches is noise as well, whichever run agrees best with all others
-    if run.agreement > SUPPORT and one.sensor.kind != 'contact_force':
-        return one.blind
-    return all(r.comparisons[name].blind for r in runs if name in r.comparisons)
+    sure = one.constant or one.sensor.kind != 'contact_force'
+    silent = [r.comparisons[name].silent for r in runs if name in r.comparisons]
+    if one.silent if sure and run.agreement > SUPPORT else all(silent):
+        noise = '' if one.constant else ' but for noise'
+        return Finding(
+            f'it stays at {float(one.measured.mean()):.4g}{noise} where the motion should change '
+            f'it by {float(np.ptp(one.expected)):.3g}: the sensor is dead or unplugged; mend it'
+        )
+    return UNTOLD
