@@ -1,6 +1,7 @@
 """The engine: one file for each structure, compiled or plain, never stale."""
 
 import ast
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 import fcntl
 import sys
@@ -11,6 +12,7 @@ import pytest
 
 from tendon_ros.base.errors import SimulationError
 from tendon_ros.model import engine
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.layout import structure_of
 
 
@@ -35,6 +37,18 @@ def test_the_file_stands_alone(structure):
         own |= {a.arg for a in function.args.args}
         used = {n.id for n in names if isinstance(n.ctx, ast.Load)}
         assert used <= own | known, function.name
+
+
+def test_no_name_of_the_file_means_two_things(body):
+    # its parts are joined: a constant of one would silently be another's offset
+    effects = (EffectUse('presliding_friction', 'pulley_body', {'torque': 0.1, 'angle': 1e-3}),)
+    tree = ast.parse(engine.joined_source(structure_of(body(effects=effects)), compiled=False))
+    names = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    for node in tree.body:
+        if isinstance(node, ast.Assign):
+            written = (n for target in node.targets for n in ast.walk(target))
+            names += [n.id for n in written if isinstance(n, ast.Name)]
+    assert not [name for name, count in Counter(names).items() if count > 1]
 
 
 def test_an_engine_that_does_not_exist_is_none(structure):

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -186,6 +187,30 @@ def test_a_trembling_takes_friction_away_from_holds_and_slow_motions(body):
     assert rows.effort[1900, 0] == pytest.approx(slow, rel=1e-3)
     held = slow * np.exp(-(time[2100:] - 2.0) * dither / angle)
     assert rows.effort[2100:, 0] == pytest.approx(held, rel=5e-3)
+
+
+@pytest.mark.parametrize('step', [1e-3, 4e-3])
+def test_bristles_follow_a_given_motion_that_turns_back_in_a_moment(body, step):
+    # an axis at 120 rad/s that stops within two samples, overshoots, stands, and goes back: its
+    # bristles bend within a thousandth of what it goes meanwhile
+    angle = 1e-3
+    shape = {'torque': 0.2, 'angle': angle}
+    one = body(effects=(EffectUse('presliding_friction', 'pulley_body', shape),))
+    one = replace(one, control_period=step)
+    time = step * np.arange(round(4.0 / step))
+    turns = np.arange(0.0, 4.2, 0.35)
+    speed = np.interp(time, turns, np.resize([0.0, 120.0, 120.0, -3.0, 0.0, -120.0], len(turns)))
+    speed[np.diff(np.floor(time / 0.35), append=0.0) > 0.0] *= -0.02
+    angles = step * np.cumsum(speed)
+    motion = Signals.smooth(0.0, step, angles[None, :])
+    rows = predict(one, motion, ('body',), len(time) - 1, tolerance=1e-4)
+    fine = np.linspace(0.0, time[-1], 40 * (len(time) - 1) + 1)
+    path = CubicHermiteSpline(time, motion.value[0], motion.slope[0])(fine)
+    bent = [0.0]
+    for way in np.diff(path):
+        bent.append(np.sign(way) + (bent[-1] - np.sign(way)) * np.exp(-abs(way) / angle))
+    assert np.count_nonzero(np.diff(np.sign(bent))) >= 6
+    assert -rows.dry_friction[:, 0] == pytest.approx(0.2 * np.array(bent[::40]), abs=0.02)
 
 
 @pytest.mark.parametrize('names', [('gear',), ('gear', 'spindle', 'drum', 'jaw')], ids='-'.join)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 
-from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
+from tendon_ros.model.kernel.events import begin, BRIEF, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
 from tendon_ros.model.kernel.linear import hold, linearise, outer
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, DRUM, DRY, EPOCH, F, FIRST, Floats, Ints, LASH, M,
-    MODE, N, NEXT, PERIOD, ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
+    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, BRISTLED, CLOCK, COUNT, DRAWN, DRIVE, DRIVEN, DRUM, DRY,
+    EPOCH, F, FIRST, Floats, Ints, LASH, M, MODE, MOTION, N, NEXT, PERIOD, ROOM, ROW, SLACK,
+    SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
 
 LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
@@ -34,6 +35,37 @@ def longest(d: Ints, g: Ints, s: Floats) -> float:
         if d[DRY + i] == 1 and g[MODE + i] == 0:
             return LONGEST_STUCK
     return LONGEST
+
+
+def turning(m: Floats, d: Ints, w: Floats, s: Floats, t: float) -> float:
+    """
+    Return for how long bristles at time t bend one way, or hardly bend [s].
+
+    Once they are bent as far as they go nothing changes, whatever the step: it would stride over
+    a pulley's way back as if there were none.
+    """
+    most = LONGEST
+    if d[BRISTLED] == 0 or d[DRIVEN] == 0:
+        return most
+    samples = int(s[2])
+    cell = int((t + SMALLEST - s[0]) * s[1])
+    if cell < 0:
+        return most
+    for i in range(N):
+        if d[DRIVE + i] == 0 or d[BRISTLE + i] < 0:
+            continue
+        brief = BRIEF * m[BREAKAWAY + i] * s[1]
+        omega = w[START + N + i]
+        slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
+        near = cell + 1  # the step may always go as far as the next sample
+        while near < samples and near - cell < most * s[1]:
+            then = s[slopes + near]
+            if then * omega < 0.0 and abs(then) + abs(omega) > brief:
+                end = s[0] + max(near - 1, cell + 1) / s[1]
+                most = min(most, max(end - t, SMALLEST))
+                break
+            near += 1
+    return most
 
 
 def gathers(w: Floats, g: Ints, index: int) -> bool:
@@ -86,7 +118,7 @@ def advance(
             for k in range(M):
                 w[SLACK_START + k] = w[SLACK + k]
             whole = stop - t
-            h = min(c[STEP], whole, longest(d, g, s))
+            h = min(c[STEP], whole, longest(d, g, s), turning(m, d, w, s, t))
             if h > 0.7 * whole and h < whole:
                 h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
             error = step(m, d, w, g, s, c, t, h)
