@@ -120,6 +120,21 @@ def test_counts_that_are_lost_while_a_motor_turns_leave_a_leap(bench, sound):
     assert f'leaps by {4.0 * abs(steps[at]):.2g}'[:10] in intake.left_out[0]
 
 
+def test_samples_that_are_lost_at_rest_leave_a_leap():
+    """An axis that rested meanwhile went on, and rests again."""
+    time = 1e-3 * np.arange(3000)
+    angle = np.interp(time, [0.0, 1.0, 1.5, 3.0], [0.0, 0.0, 20.0, 20.0])
+    lost = np.where(time > 2.0, 35.0, angle)
+    (found,) = breaks_of(Channel('actuator/pulley_screw/position', time, lost))
+    assert 'leaps by 15 rad between two samples at 2.000 s: the clock jumped back' in found.words
+
+
+def test_a_servo_that_is_read_seldom_goes_from_rest_to_rest_within_a_sample():
+    time = 0.1 * np.arange(200)
+    angle = 0.3 * np.floor(time / 2.0) * (-1.0) ** np.floor(time / 2.0)
+    assert breaks_of(Channel('actuator/pulley_arm/position', time, angle)) == []
+
+
 def test_a_torque_may_leap():
     """A voltage that is all that drives a motor is set anew from one message to the next."""
     time = np.arange(0.0, 4.0, 0.02)

@@ -17,6 +17,8 @@ LONG_GAP = 0.5  # [s] beyond which the motion is unknown
 #: times the steps around it, or times what these differ by from one to the next and some times
 #: them, by which a step is another than those beside it: no motor moves like that
 LEAP, FASTER = 20.0, 3.0
+#: times the largest step at any other time by which one from rest to rest is none of the motor
+UNSEEN = 20.0
 AROUND = 5  # samples
 TURN = 2.0 * math.pi  # [rad]
 ALL = 0.9  # part of all that it reads by which a reading begins anew
@@ -91,9 +93,12 @@ def _leaps(channel: Channel) -> Iterator[Break]:
         left, right = np.abs(earlier).max(), np.abs(later).max()
         pace = max(left, right)
         uneven = max(np.abs(np.diff(earlier)).max(), np.abs(np.diff(later)).max())
-        # in motion on both sides: between rests, a small servo may well go like that
-        moves = min(left, right) > 0.0
-        if moves and off[n] > max(FASTER * pace, LEAP * min(pace, uneven)):
+        if min(left, right) > 0.0:
+            jumps = off[n] > max(FASTER * pace, LEAP * min(pace, uneven))
+        else:  # between rests a small servo may well go like that, and does so at other times
+            other = np.delete(leap, slice(n - AROUND, n + 1 + AROUND)).max(initial=0.0)
+            jumps = leap[n] > UNSEEN * other > 0.0
+        if jumps:
             after = '360 deg' if abs(leap[n] - TURN) <= 2.0 * pace else f'{leap[n]:.4g} rad'
             cause = (
                 f'the reading begins anew: import it with wrap: {after} in its mapping'
