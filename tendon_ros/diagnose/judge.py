@@ -118,27 +118,35 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     :param found: what the search has found.
     :param without: the fit without one cause, or without several that make up for one another.
     :param left: what all that may be believed leaves.
-    :return: the signs; where the laws of all others hardly act for most of the time, those of that
-        time if they say more, since what a limit's law gets wrong says nothing of all else.
+    :return: the signs; where the laws of all others, or of events, hardly act for most of the
+        time, those of that time if they say more, since what a limit's law gets wrong, or one that
+        lasts for a moment, says nothing of all else.
     """
     final = found.final
     parts = form_parts(problem, found.start, final)
     similar = alike(problem, final, without)
     whole = _signs(problem, found, (without, final), left, parts, similar)
     kept = set(without.model.causes)
-    others = [part for cause, part in zip(final.model.causes, parts, strict=True) if cause in kept]
-    quiet = summed(others, final) < LEAST_IN_ONE
-    if not MOSTLY < np.mean(quiet) < 1.0:
-        return whole
-    apart = _signs(
-        problem,
-        found,
-        (_among(without, quiet), _among(final, quiet)),
-        _structure(problem, _only(left.samples, quiet)),
-        [_only(np.sqrt(part), quiet) ** 2 for part in parts],
-        similar,
-    )
-    return max(whole, apart, key=probability)
+    others = [
+        (part, bool(cause.instants))
+        for cause, part in zip(final.model.causes, parts, strict=True)
+        if cause in kept
+    ]
+    signs = [whole]
+    for among in ([part for part, _ in others], [part for part, event in others if event]):
+        quiet = summed(among, final) < LEAST_IN_ONE
+        if MOSTLY < np.mean(quiet) < 1.0:
+            signs.append(
+                _signs(
+                    problem,
+                    found,
+                    (_among(without, quiet), _among(final, quiet)),
+                    _structure(problem, _only(left.samples, quiet)),
+                    [_only(np.sqrt(part), quiet) ** 2 for part in parts],
+                    similar,
+                )
+            )
+    return max(signs, key=probability)
 
 
 def _only(samples: FloatArray, among: BoolArray) -> FloatArray:

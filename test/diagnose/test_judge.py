@@ -12,6 +12,7 @@ from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import (
     chance,
     IDLE,
+    MOSTLY,
     NOTHING,
     signs_beside,
     spoils,
@@ -55,7 +56,7 @@ def test_a_true_cause_spoils_nothing(ready):
 
 def test_a_wrong_cause_spoils_what_was_not_fitted(ready):
     found = found_with(ready.problem, FRICTION)
-    wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.05})
+    wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.12})
     found.without.append(found.final)
     found.states.append(replace(found.final, model=wrong))
     assert spoils(ready, found, found.without[1])
@@ -128,7 +129,7 @@ def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believe
 
 def test_the_law_beside_is_that_of_the_others_at_the_place(bench, measured_on):
     viscous = ('viscous_friction', 'pulley_3', {'damping': 0.5})
-    bias = ('torque_bias', 'motor_M', {'torque': 0.05})
+    bias = ('torque_bias', 'motor_M', {'torque': 0.12})
     ready = prepared([measured_on(bench, FRICTION, viscous, bias)], bench)
     found = found_with(ready.problem, FRICTION, viscous, bias)
     left = stays(ready, found.final)
@@ -217,3 +218,34 @@ def test_what_a_limit_gets_wrong_where_it_acts_says_nothing_of_friction(
     )
     signs = signs_beside(problem, found, found.without[1], left)
     assert (probability(signs) > NAMED) is believed
+
+
+@pytest.mark.parametrize('while_pushed', [True, False])
+def test_what_a_push_gets_wrong_while_it_lasts_says_nothing_of_damping(measured_on, while_pushed):
+    body = load_instrument('single_body')
+    push = ('disturbance', 'pulley_body', {'torque': 0.3, 'start': 3.0, 'duration': 0.7})
+    # whose law acts nearly all the time: there is hardly a moment in which no other does
+    spring = ('joint_spring', 'pulley_body', {'stiffness': 3.0, 'rest': 0.5})
+    damped = ('viscous_friction', 'pulley_body', {'damping': 0.01})
+    run = measured_on(
+        body, push, spring, damped, settings=(('duration', '8 s'), ('amplitude', '30 deg'))
+    )
+    ready = prepared([run], body)
+    problem = ready.problem
+    found = found_with(problem, push, spring, damped)
+    pushed, sprung, _ = form_parts(problem, found.start, found.final)
+    assert np.mean(pushed + sprung < LEAST_IN_ONE) < MOSTLY
+    acts = pushed > LEAST_IN_ONE
+    worth = (found.without[2].cost - found.final.cost) / len(acts)
+    there = acts if while_pushed else ~acts
+    wrong = np.where(there, np.sqrt(worth / np.mean(there)), 0.0)
+    left = stays(ready, found.final)
+    more = left.whole + worth
+    left = replace(
+        left,
+        by_channel=dict.fromkeys(left.by_channel, more),
+        whole=more,
+        samples=left.samples + wrong,
+    )
+    signs = signs_beside(problem, found, found.without[2], left)
+    assert (probability(signs) > NAMED) is while_pushed
