@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.gap import noise_of, offs
@@ -30,6 +31,8 @@ LOST, UNFORETOLD = 0.5, 10.0
 #: times its noise that a channel is off from which on one wants to know when; and the part of that
 #: which lies in one second, where something happened once
 OFF, AT_ONCE = 2.0, 0.5
+#: numbers at the end of their tolerance of which each may be the reason
+FEW = 3
 #: effects, and numbers of the file, by which torques or motions are another number of times as
 #: large: other guesses may well be off by fifty times
 SCALING = frozenset({'torque_gain', 'encoder_gain', 'inertia'})
@@ -77,15 +80,24 @@ def ended_words(moved: Sequence[Moved]) -> list[str]:
     Say which numbers of the file something takes to the end of their tolerance.
 
     :param moved: the numbers of the file as they were fitted.
-    :return: a sentence for each.
+    :return: a sentence for each; one for all where they are too many for each to be the reason.
     """
+    ended = [one for one in moved if one.ended]
+    if len(ended) > FEW:
+        names = listed(f'{one.quantity.replace("_", " ")} of {one.place}' for one in ended)
+        return [
+            f'{len(ended)} numbers of the file have moved to the ends of their tolerances, and '
+            'still more is wanted: none of them is the reason, but whatever moves is taken to '
+            'make up for something else. Where nothing is wrong with the recordings (a column, a '
+            'channel whose stamps or samples were lost on the way), it is something that no effect '
+            f'is like ({names})'
+        ]
     return [
         f'the {one.quantity.replace("_", " ")} of {one.place} has moved to the end of its '
         f'tolerance ({one.off:.2g} deviations), and still more is wanted: the file knows it less '
         'well than it says, it changes from one recording to the next, or something unknown is '
         'told by it'
-        for one in moved
-        if one.ended
+        for one in ended
     ]
 
 
