@@ -88,9 +88,9 @@ def ended_words(moved: Sequence[Moved]) -> list[str]:
         return [
             f'{len(ended)} numbers of the file have moved to the ends of their tolerances, and '
             'still more is wanted: none of them is the reason, but whatever moves is taken to '
-            'make up for something else. Where nothing is wrong with the recordings (a column, a '
-            'channel whose stamps or samples were lost on the way), it is something that no effect '
-            f'is like ({names})'
+            'make up for something else. Where nothing is wrong with the recordings (a column, '
+            'stamps or samples that were lost on the way), it is something that no effect is like '
+            f'({names})'
         ]
     return [
         f'the {one.quantity.replace("_", " ")} of {one.place} has moved to the end of its '

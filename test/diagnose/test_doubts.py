@@ -122,9 +122,7 @@ def test_a_number_at_the_end_of_its_tolerance_is_said(off, said):
 
 
 def test_many_numbers_at_the_ends_of_their_tolerances_are_one_doubt():
-    moved = [
-        Moved(f'pulley_{n}', 'inertia', 1.09, (1.08, 1.1), '1', off=3.0) for n in range(1, 6)
-    ]
+    moved = [Moved(f'pulley_{n}', 'inertia', 1.09, (1.08, 1.1), '1', off=3.0) for n in range(1, 6)]
     (word,) = ended_words(moved)
     assert word.startswith('5 numbers of the file have moved to the ends of their tolerances')
     assert word.endswith('(inertia of pulley_1, inertia of pulley_2, inertia of pulley_3, '
