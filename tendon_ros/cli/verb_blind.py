@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument(
         '--channels', nargs='+', metavar='SET', help='motor, force, joint; of axis and arm motor'
     )
-    make.add_argument('--nuisance', type=float, default=0.01, help='one sigma, relative')
+    make.add_argument('--nuisance', type=float, default=0.01, help=f'one sigma, relative: {MOST} at most')
     make.add_argument('--jobs', type=int, default=1, help='processes')
     run_ = tasks.add_parser('run', help='diagnose every case, without its label')
     run_.add_argument('folder', type=Path, metavar='DIR')
@@ -83,12 +83,14 @@ def _score(args: argparse.Namespace) -> None:
     print(f'{folder}/scoreboard.html')
 
 
-def _check(name: str, value: float, least: float) -> None:
-    """Refuse a number that is too small."""
+def _check(name: str, value: float, least: float, most: float | None = None) -> None:
+    """Refuse a number that is too small or too large."""
     from tendon_ros.base.errors import RecordingError
 
     if value < least:
         raise RecordingError(f'{name} {value}: is too small; give {least} or more')
+    if most is not None and value > most:
+        raise RecordingError(f'{name} {value}: is too large; give {most} or less')
 
 
 def _make(args: argparse.Namespace) -> None:
@@ -110,11 +112,7 @@ def _make(args: argparse.Namespace) -> None:
     _check('--cases', args.cases, 1)
     _check('--seed', args.seed, 0)
     _check('--jobs', args.jobs, 1)
-    _check('--nuisance', args.nuisance, 0.0)
-    if args.nuisance > MOST:
-        raise RecordingError(
-            f'--nuisance {args.nuisance}: is relative, one sigma; give {MOST} ({MOST:.0%}) or less'
-        )
+    _check('--nuisance', args.nuisance, 0.0, MOST)
     settings = Settings(args.bench, args.nuisance, tuple(strata), tuple(channels))
     with shown('making cases') as progress:
         make(args.out, args.seed, args.cases, settings, jobs=args.jobs, progress=progress)

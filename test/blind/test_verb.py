@@ -15,7 +15,7 @@ from tendon_ros.cli.main import main
         (['--channels', 'video'], 'joint'),
         (['--jobs', '0'], 'give 1 or more'),
         (['--nuisance', '-1'], 'give 0.0 or more'),
-        (['--nuisance', '1'], 'give 0.1 (10%) or less'),
+        (['--nuisance', '1'], 'is too large; give 0.1 or less'),
     ],
 )
 def test_wrong_arguments_are_named(wrong, said, tmp_path, capsys):
