@@ -28,7 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     make.add_argument(
         '--channels', nargs='+', metavar='SET', help='motor, force, joint; of axis and arm motor'
     )
-    make.add_argument('--nuisance', type=float, default=0.01, help=f'one sigma, relative: {MOST} at most')
+    make.add_argument(
+        '--nuisance', type=float, default=0.01, help=f'one sigma, relative; {MOST} at most'
+    )
     make.add_argument('--jobs', type=int, default=1, help='processes')
     run_ = tasks.add_parser('run', help='diagnose every case, without its label')
     run_.add_argument('folder', type=Path, metavar='DIR')
