@@ -44,23 +44,22 @@ def turning(m: Floats, d: Ints, w: Floats, s: Floats, t: float) -> float:
     Once they are bent as far as they go nothing changes, whatever the step: it would stride over
     a pulley's way back as if there were none.
     """
-    most = LONGEST
     if d[BRISTLED] == 0 or d[DRIVEN] == 0:
-        return most
+        return 1e300
+    most = LONGEST
     samples = int(s[2])
     cell = int((t + SMALLEST - s[0]) * s[1])
-    if cell < 0:
-        return most
     for i in range(N):
         if d[DRIVE + i] == 0 or d[BRISTLE + i] < 0:
             continue
         brief = BRIEF * m[BREAKAWAY + i] * s[1]
         omega = w[START + N + i]
         slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
-        near = cell + 1  # the step may always go as far as the next sample
+        near = max(cell, 0) + 1
         while near < samples and near - cell < most * s[1]:
             then = s[slopes + near]
             if then * omega < 0.0 and abs(then) + abs(omega) > brief:
+                # as far as the last sample that goes its way, or the next one
                 end = s[0] + max(near - 1, cell + 1) / s[1]
                 most = min(most, max(end - t, SMALLEST))
                 break
