@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from tendon_ros.diagnose.enough import BLOCK
 from tendon_ros.diagnose.evidence import ENDED
 from tendon_ros.diagnose.form import form_power, own_power, own_profile
 from tendon_ros.diagnose.found import Found
@@ -14,6 +16,8 @@ from tendon_ros.diagnose.judge import stays
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import LEFT_NOISE
 from tendon_ros.identify.fit import Fit, Problem
+
+FloatArray = NDArray[np.float64]
 
 #: structured power of noise that wanders: sensors of sound simulated belts left 0.12 to 0.14
 WANDERS = 0.07
@@ -77,8 +81,9 @@ def left_over(left: float, form: float) -> float:
     return 1.0 / (1.0 + math.exp(-STEEP * math.log(ratio / EVEN)))
 
 
-#: times the misfit of what was fitted that may stay in what was held out
-SURPRISE = 4.0
+#: times the misfit of what was fitted that may stay in what was held out; and the part of a block
+#: that has to be there for it to say anything
+SURPRISE, TOLD = 4.0, 0.5
 
 
 def surprising(ready: Prepared, found: Found) -> bool:
@@ -89,7 +94,25 @@ def surprising(ready: Prepared, found: Found) -> bool:
     :param found: what the search has found.
     :return: whether to fit the blocks that were held out, and hold out others.
     """
-    left = ready.problem.structures(found.final.left)[1]
-    unseen = ready.held.structures(ready.held.left(found.final.model))[1]
+    seen, unseen = found.final.left, ready.held.left(found.final.model)
+    left = ready.problem.structures(seen)[1]
     form = form_power(ready.problem, found.start, found.final)
-    return unseen > SURPRISE * (LEFT_NOISE + form + left)
+    if ready.held.structures(unseen)[1] > SURPRISE * (LEFT_NOISE + form + left):
+        return True
+    # what laws get wrong they get wrong in blocks that were fitted as well
+    usual, there = _worst(ready.problem, seen), _worst(ready.held, unseen)
+    return any(power > SURPRISE * (1.0 + usual.get(name, 0.0)) for name, power in there.items())
+
+
+def _worst(problem: Problem, left: FloatArray) -> dict[str, float]:
+    """Return by channel the noise power of the block in which most is left."""
+    found: dict[str, float] = {}
+    for n, c, span in problem.spans():
+        segment = problem.rollouts.segments[n]
+        block = np.floor(segment.time[problem.masks[n][c]] / BLOCK).astype(np.int64)
+        count = np.bincount(block)
+        power = np.bincount(block, weights=left[span] ** 2) / np.maximum(count, 1)
+        whole = power[count * segment.period >= TOLD * BLOCK]
+        name = segment.measured[c].sensor.channel
+        found[name] = max(found.get(name, 0.0), float(whole.max(initial=0.0)))
+    return found

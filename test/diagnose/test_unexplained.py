@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.evidence import ENDED
-from tendon_ros.diagnose.form import own_power, own_profile
+from tendon_ros.diagnose.form import form_power, own_power, own_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.unexplained import left_over, unexplained
+from tendon_ros.diagnose.unexplained import left_over, SURPRISE, surprising, unexplained
+from tendon_ros.identify.candidate import everyone
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -83,3 +84,24 @@ def test_what_is_far_more_than_laws_get_wrong_there_is_none_of_theirs(measured_o
         wrong = np.where(knocks, np.sqrt(25.0 * np.mean(profile)), 0.0)
     state = replace(start, left=start.left + wrong)
     assert (unexplained(ready, found, state) > NAMED) == told
+
+
+@pytest.mark.parametrize(('start', 'says'), [(4.6, True), (2.9, False)])
+def test_a_push_that_no_fit_has_seen_is_a_surprise_beside_a_ripple_that_may_be_wrong(
+    measured_on, start, says
+):
+    body = load_instrument('single_body')
+    push = ('disturbance', 'pulley_body', {'torque': 0.1, 'start': start, 'duration': 1.2})
+    ripple = ('torque_ripple', 'motor_body', {'amplitude': 0.3, 'cycles': 23.0, 'phase': 0.4})
+    run = measured_on(body, push, ripple, settings=(('duration', '12 s'), ('amplitude', '40 deg')))
+    ready = prepared([run], body)
+    problem = ready.problem
+    [motor] = [c for c in everyone(body, list(run.channels)) if c.effect == 'torque_ripple']
+    nothing = problem.fitted(problem.empty)
+    fit = problem.fitted(problem.empty.joined(motor, ripple[2]))
+    found = Found(states=[nothing, fit])
+    # as much of the ripple's law may be wrong as the push leaves of all that was held out
+    form = form_power(problem, nothing, fit)
+    unseen = ready.held.structures(ready.held.left(fit.model))[1]
+    assert not says or 1.0 < unseen < SURPRISE * form
+    assert surprising(ready, found) is says
