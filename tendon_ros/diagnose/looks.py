@@ -22,7 +22,11 @@ from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.search import GAINED, Search
 from tendon_ros.diagnose.spread import loose
-from tendon_ros.diagnose.unexplained import surprising, unexplained
+from tendon_ros.diagnose.unexplained import (
+    stands_out_in_a_block,
+    surprising,
+    unexplained,
+)
 from tendon_ros.diagnose.worth import (
     beyond_laws,
     hopeless,
@@ -192,11 +196,21 @@ class Looks:
             self.found = self._look(self.found.final.model)
 
     def _otherwise_held_out(self) -> None:
-        """Hold out other blocks: what stands in for the unknown foretells nothing in any."""
-        if surprising(self.ready, self.found) and self._worth_more():
-            self._again('something happened in what was held out')
-            self.ready = self.ready.moved(KEPT // 2)
-            self.found = self._look(self.found.final.model)
+        """
+        Hold out other blocks: what stands in for the unknown foretells nothing in any.
+
+        What happened in one block is fitted then. Where another one stands out instead, it was
+        nothing that happened once.
+        """
+        whole = surprising(self.ready, self.found)
+        if not (whole or stands_out_in_a_block(self.ready, self.found)) or not self._worth_more():
+            return
+        self._again('something happened in what was held out')
+        before = self.ready, self.found
+        self.ready = self.ready.moved(KEPT // 2)
+        self.found = self._look(self.found.final.model)
+        if not whole and stands_out_in_a_block(self.ready, self.found):
+            self.ready, self.found = before
 
     def _allowing(self) -> None:
         """

@@ -94,13 +94,24 @@ def surprising(ready: Prepared, found: Found) -> bool:
     :param found: what the search has found.
     :return: whether to fit the blocks that were held out, and hold out others.
     """
-    seen, unseen = found.final.left, ready.held.left(found.final.model)
-    left = ready.problem.structures(seen)[1]
+    left = ready.problem.structures(found.final.left)[1]
+    unseen = ready.held.structures(ready.held.left(found.final.model))[1]
     form = form_power(ready.problem, found.start, found.final)
-    if ready.held.structures(unseen)[1] > SURPRISE * (LEFT_NOISE + form + left):
-        return True
-    # what laws get wrong they get wrong in blocks that were fitted as well
-    usual, there = _worst(ready.problem, seen), _worst(ready.held, unseen)
+    return unseen > SURPRISE * (LEFT_NOISE + form + left)
+
+
+def stands_out_in_a_block(ready: Prepared, found: Found) -> bool:
+    """
+    Return whether one block that was held out leaves far more than any that was fitted.
+
+    What laws get wrong they get wrong in blocks that were fitted as well.
+
+    :param ready: the problem.
+    :param found: what the search has found.
+    :return: whether to hold out others, and to keep to them if none stands out any more.
+    """
+    usual = _worst(ready.problem, found.final.left)
+    there = _worst(ready.held, ready.held.left(found.final.model))
     return any(power > SURPRISE * (1.0 + usual.get(name, 0.0)) for name, power in there.items())
 
 

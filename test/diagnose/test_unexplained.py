@@ -10,7 +10,13 @@ from tendon_ros.diagnose.form import form_power, own_power, own_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.unexplained import left_over, SURPRISE, surprising, unexplained
+from tendon_ros.diagnose.unexplained import (
+    left_over,
+    stands_out_in_a_block,
+    SURPRISE,
+    surprising,
+    unexplained,
+)
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -104,4 +110,5 @@ def test_a_push_that_no_fit_has_seen_is_a_surprise_beside_a_ripple_that_may_be_w
     form = form_power(problem, nothing, fit)
     unseen = ready.held.structures(ready.held.left(fit.model))[1]
     assert not says or 1.0 < unseen < SURPRISE * form
-    assert surprising(ready, found) is says
+    assert not surprising(ready, found)
+    assert stands_out_in_a_block(ready, found) is says
