@@ -203,7 +203,10 @@ class Looks:
         nothing that happened once.
         """
         whole = surprising(self.ready, self.found)
-        if not (whole or stands_out_in_a_block(self.ready, self.found)) or not self._worth_more():
+        # where no law is quite right, blocks stand out without anything that happened
+        told = not self.ready.problem.by_misfit
+        once = told and stands_out_in_a_block(self.ready, self.found)
+        if not (whole or once) or not self._worth_more():
             return
         self._again('something happened in what was held out')
         before = self.ready, self.found

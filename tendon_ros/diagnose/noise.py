@@ -173,7 +173,7 @@ def _heard(measured: Measured, left: FloatArray, apart: int) -> float:
     """Return the noise of a channel that bins near each other do not share, in its unit."""
     # a silent sensor would make any misfit infinite: a millionth of its range is noise
     span = float(np.nanmax(np.abs(measured.value), initial=0.0))
-    return max(heard(left, apart, measured.floor), measured.floor, 1e-6 * span + 1e-12)
+    return max(heard(left, apart), measured.floor, 1e-6 * span + 1e-12)
 
 
 def _counted(

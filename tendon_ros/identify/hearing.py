@@ -25,9 +25,6 @@ PERIODS = 6  # times as far apart as neighbours that periods of what shakes are 
 #: period and no chance; and from which on less of it between nearer bins is a motion: noise with a
 #: memory, and be it a random walk, keeps a part that is one by the bins between
 SHAKES, MOVES = 0.5, 0.01
-#: the same where the nearest bins differ by no more than so many deviations of the sensor's own
-#: noise: that is noise, and the memory of it is not what bins farther apart differ by
-TOLD, TOLD_MOVES = 2.0, 0.1
 FEW = 0.2  # of the samples that a period may be apart
 LOUD = 2.0  # noise powers that are no noise: what is left may shake
 
@@ -44,13 +41,12 @@ def neighbours(period: float, *, counted: bool) -> int:
     return max(apart, min(COUNTED, math.ceil(LATER / period))) if counted else apart
 
 
-def heard(left: FloatArray, apart: int, told: float = 0.0) -> float:
+def heard(left: FloatArray, apart: int) -> float:
     """
     Return the noise of a series of which a wrong model may leave motion.
 
     :param left: what a model leaves of a channel, shape (bins,), NaN where nothing was measured.
     :param apart: how many bins apart noise is a difference and motion is not.
-    :param told: one deviation of the sensor's own noise in a bin, in its unit; 0 if not known.
     :return: one deviation, in its unit.
     """
     # where samples are seldom, some bins have none
@@ -61,17 +57,16 @@ def heard(left: FloatArray, apart: int, told: float = 0.0) -> float:
         bend = known[2 * lag :] - 2.0 * known[lag:-lag] + known[: -2 * lag]
         return _typical(bend) ** 2 if bend.size else math.inf
 
-    found = _quietest(power, apart, known.size, 6.0 * told**2)
+    found = _quietest(power, apart, known.size)
     return math.sqrt(found / 6.0) if math.isfinite(found) else 0.0
 
 
-def unshared(left: FloatArray, apart: int, told: float = 0.0) -> float:
+def unshared(left: FloatArray, apart: int) -> float:
     """
     Return the power of a series that is noise.
 
     :param left: what a model leaves, in noise deviations, shape (samples,).
     :param apart: how many bins apart noise is a difference and motion is not; less than samples.
-    :param told: one deviation of the sensor's own noise, in noise deviations; 0 if not known.
     :return: mean square in noise deviations.
     """
 
@@ -82,7 +77,7 @@ def unshared(left: FloatArray, apart: int, told: float = 0.0) -> float:
     # as much as noise is for certain no shaking, and all of it is soon said
     found = power(apart)
     if found > LOUD:
-        found = _quietest(power, apart, left.size, told**2)
+        found = _quietest(power, apart, left.size)
     if found <= 1.0:
         return found
     # a sensor's spikes last for one reading
@@ -95,21 +90,19 @@ def _typical(values: FloatArray) -> float:
     return 1.4826 * float(np.median(np.abs(values)))
 
 
-def _quietest(power: Callable[[int], float], apart: int, count: int, told: float) -> float:
+def _quietest(power: Callable[[int], float], apart: int, count: int) -> float:
     """
     Return the power of neighbours that is noise, of so many samples.
 
     Of those a period apart where what is left shakes, of the nearest where it swings more slowly.
-    ``told`` is what they differ by for the sensor's own noise.
     """
     usual = min(power(lag) for lag in range(apart, max(apart, COUNTED) + 1))
     # a few samples far apart differ by chance as much or as little as they like
     farthest = min(PERIODS * apart, int(FEW * count))
     later = min((power(lag) for lag in range(apart + 1, farthest + 1)), default=math.inf)
     nearest = power(1)
-    moves = TOLD_MOVES if nearest < TOLD**2 * told else MOVES
     return min(
         usual,
         later if later < SHAKES * usual else usual,
-        nearest if nearest < moves * usual else usual,
+        nearest if nearest < MOVES * usual else usual,
     )

@@ -321,10 +321,9 @@ class Residuals:
             apart = neighbours(segment.spacing, counted=bool(segment.prescribed))
             if len(own) <= apart:
                 continue
-            measured = segment.measured[c]
-            told = measured.floor / float(np.sqrt(np.mean(measured.doubt**2)))
-            noise = len(own) * unshared(own, apart, told)
+            noise = len(own) * unshared(own, apart)
             # what keeps below noise that has a shape is no gap
+            measured = segment.measured[c]
             shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
             beyond = float(own @ own) - max(noise, FLOOR * shaped * len(own))
             power, count = found.get(measured.sensor.channel, (0.0, 0))

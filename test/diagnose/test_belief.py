@@ -22,6 +22,21 @@ TENSION = Candidate('tension_friction', 'pulley_3')
 GAIN = Candidate('torque_gain', 'motor_L')
 
 
+def ends_with(ready, *begun):
+    """Return what a search leaves that ends with given causes."""
+    problem = ready.problem
+    model = problem.empty
+    for candidate, values in begun:
+        model = model.joined(candidate, values)
+    start, final = problem.fitted(problem.empty), problem.fitted(model)
+    every = range(len(begun))
+    return ready, Found(
+        states=[start, final],
+        rivals=[[] for _ in every],
+        without=[problem.fitted(final.model.without(k)) for k in every],
+    )
+
+
 @pytest.fixture(scope='module')
 def found_of(bench, measured_on):
     """Return a way to what a search would leave that ends with given causes, of one bench."""
@@ -31,21 +46,7 @@ def found_of(bench, measured_on):
         ('torque_gain', 'motor_L', {'gain': 1.1}),
     )
     ready = prepared([run], bench)
-
-    def search(*begun):
-        problem = ready.problem
-        model = problem.empty
-        for candidate, values in begun:
-            model = model.joined(candidate, values)
-        start, final = problem.fitted(problem.empty), problem.fitted(model)
-        every = range(len(begun))
-        return ready, Found(
-            states=[start, final],
-            rivals=[[] for _ in every],
-            without=[problem.fitted(final.model.without(k)) for k in every],
-        )
-
-    return search
+    return lambda *begun: ends_with(ready, *begun)
 
 
 @pytest.fixture(scope='module')
@@ -133,16 +134,16 @@ def test_causes_that_act_apart_are_no_company(alike):
         assert companies(ready, found, weighed, able, stays(ready, found.final)) == []
 
 
-def test_a_motor_is_at_the_place_of_its_pulley(found_of):
+@pytest.mark.parametrize(('place', 'beside'), [('pulley_2', False), ('pulley_L', True)])
+def test_a_motor_is_at_the_place_of_its_pulley(bench, measured_on, place, beside):
     """What the friction's law may leave speaks against a small cause in the motor, too."""
-    elsewhere = (Candidate('coulomb_friction', 'pulley_2'), {'torque': 0.05})
-    there = (Candidate('coulomb_friction', 'pulley_L'), {'torque': 0.05})
-    for friction, beside in ((elsewhere, False), (there, True)):
-        ready, found = found_of(friction, (GAIN, {'gain': 1.1}))
-        assert (
-            signs_beside(ready.problem, found, found.without[1], stays(ready, found.final)).beside
-            > 0.0
-        ) == beside
+    rubs = (Candidate('coulomb_friction', place), {'torque': 0.05})
+    truth = (rubs, (GAIN, {'gain': 1.1}))
+    ready, found = ends_with(
+        prepared([measured_on(bench, *((c.effect, c.place, v) for c, v in truth))], bench), *truth
+    )
+    signs = signs_beside(ready.problem, found, found.without[1], stays(ready, found.final))
+    assert (signs.beside > 0.0) == beside
 
 
 def test_what_spoils_nothing_is_kept_though_it_is_not_named(found_of, monkeypatch):
@@ -279,7 +280,7 @@ def test_what_is_as_large_without_what_undoes_each_other_is_not_doubted_for_it(
     firm = belief(ready, found)
     assert [w.chance > NAMED for w in firm.weighed] == [True, False]
     monkeypatch.setattr('tendon_ros.diagnose.belief.STEADY', 0.0)
-    assert belief(ready, found).weighed[0].chance < firm.weighed[0].chance
+    assert belief(ready, found).weighed[0].signs.left > firm.weighed[0].signs.left
 
 
 def test_what_is_missed_but_may_as_well_have_no_size_is_used_and_not_named(found_of, monkeypatch):

@@ -53,29 +53,6 @@ def test_noise_with_a_memory_keeps_all_its_power():
     assert unshared(left / np.std(left), apart) == pytest.approx(1.0, rel=0.1)
 
 
-def test_a_sensor_of_known_noise_tells_more_of_what_swings():
-    # friction that grows with load, at four turns of the arm a second: sevenfold its noise
-    time = 0.008 * np.arange(4000)
-    noise = np.random.default_rng(5).normal(size=time.size)
-    left = 20.0 * np.sin(2.0 * np.pi * 2.0 * time) ** 3 + noise
-    apart = neighbours(0.008, counted=True)
-    assert heard(left, apart) > 2.0
-    assert heard(left, apart, told=0.8) < 1.3
-    assert unshared(left, apart, told=0.8) < 0.5 * unshared(left, apart)
-
-
-def test_a_sensor_of_known_noise_may_pass_through_a_filter():
-    # of what it scatters at rest, bins of four readings would leave a half
-    rng = np.random.default_rng(6)
-    left = np.zeros(20_000)
-    for n, kick in enumerate(rng.normal(size=left.size)):
-        left[n] = 0.7 * left[n - 1] + kick
-    apart = neighbours(0.008, counted=True)
-    told = 0.5 * float(np.std(left))
-    assert heard(left, apart, told) == heard(left, apart) > 0.85 * np.std(left)
-    assert unshared(left / told, apart, 1.0) == pytest.approx(4.0, rel=0.2)
-
-
 @pytest.mark.parametrize('lasts', [4, 8])
 def test_what_knocks_now_and_then_is_no_noise(lasts):
     # a gear whose teeth meet again after each reversal: nothing of it is left 40 ms later
