@@ -191,6 +191,19 @@ def test_what_happens_once_beside_what_a_law_gets_wrong_at_other_times_is_luck(
     assert (chance(ready, found, 0, signs) > IDLE) is believed
 
 
+def leaving_its_worth(ready, found, k, there):
+    """Return what stays where as much as a cause is worth is wrong at some samples, with a form."""
+    worth = (found.without[k].cost - found.final.cost) / len(there)
+    left = stays(ready, found.final)
+    more = left.whole + worth
+    return replace(
+        left,
+        by_channel=dict.fromkeys(left.by_channel, more),
+        whole=more,
+        samples=left.samples + np.where(there, np.sqrt(worth / np.mean(there)), 0.0),
+    )
+
+
 @pytest.mark.parametrize(('where_limited', 'believed'), [(True, True), (False, False)])
 def test_what_a_limit_gets_wrong_where_it_acts_says_nothing_of_friction(
     measured_on, where_limited, believed
@@ -204,18 +217,7 @@ def test_what_a_limit_gets_wrong_where_it_acts_says_nothing_of_friction(
     found = found_with(problem, limit, rubs)
     acts = form_parts(problem, found.start, found.final)[0] > LEAST_IN_ONE
     assert 0.02 < np.mean(acts) < 0.4
-    # as much as the friction is worth, and with a form
-    worth = (found.without[1].cost - found.final.cost) / len(acts)
-    there = acts if where_limited else ~acts
-    wrong = np.where(there, np.sqrt(worth / np.mean(there)), 0.0)
-    left = stays(ready, found.final)
-    more = left.whole + worth
-    left = replace(
-        left,
-        by_channel=dict.fromkeys(left.by_channel, more),
-        whole=more,
-        samples=left.samples + wrong,
-    )
+    left = leaving_its_worth(ready, found, 1, acts if where_limited else ~acts)
     signs = signs_beside(problem, found, found.without[1], left)
     assert (probability(signs) > NAMED) is believed
 
@@ -236,16 +238,6 @@ def test_what_a_push_gets_wrong_while_it_lasts_says_nothing_of_damping(measured_
     pushed, sprung, _ = form_parts(problem, found.start, found.final)
     assert np.mean(pushed + sprung < LEAST_IN_ONE) < MOSTLY
     acts = pushed > LEAST_IN_ONE
-    worth = (found.without[2].cost - found.final.cost) / len(acts)
-    there = acts if while_pushed else ~acts
-    wrong = np.where(there, np.sqrt(worth / np.mean(there)), 0.0)
-    left = stays(ready, found.final)
-    more = left.whole + worth
-    left = replace(
-        left,
-        by_channel=dict.fromkeys(left.by_channel, more),
-        whole=more,
-        samples=left.samples + wrong,
-    )
+    left = leaving_its_worth(ready, found, 2, acts if while_pushed else ~acts)
     signs = signs_beside(problem, found, found.without[2], left)
     assert (probability(signs) > NAMED) is while_pushed
