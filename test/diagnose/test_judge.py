@@ -192,7 +192,7 @@ def test_what_happens_once_beside_what_a_law_gets_wrong_at_other_times_is_luck(
 
 
 def leaving_its_worth(ready, found, k, there):
-    """Return what stays where as much as a cause is worth is wrong at some samples, with a form."""
+    """Return what stays where some samples leave as much as a cause is worth, with a form."""
     worth = (found.without[k].cost - found.final.cost) / len(there)
     left = stays(ready, found.final)
     more = left.whole + worth
