@@ -125,27 +125,26 @@ def signs_beside(problem: Problem, found: Found, without: Fit, left: Stays) -> S
     final = found.final
     parts = form_parts(problem, found.start, final)
     similar = alike(problem, final, without)
-    whole = _signs(problem, found, (without, final), left, parts, similar)
-    kept = set(without.model.causes)
     others = [
-        (part, bool(cause.instants))
+        (cause, part)
         for cause, part in zip(final.model.causes, parts, strict=True)
-        if cause in kept
+        if cause in without.model.causes
     ]
-    signs = [whole]
-    for among in ([part for part, _ in others], [part for part, event in others if event]):
-        quiet = summed(among, final) < LEAST_IN_ONE
-        if MOSTLY < np.mean(quiet) < 1.0:
-            signs.append(
-                _signs(
-                    problem,
-                    found,
-                    (_among(without, quiet), _among(final, quiet)),
-                    _structure(problem, _only(left.samples, quiet)),
-                    [_only(np.sqrt(part), quiet) ** 2 for part in parts],
-                    similar,
-                )
+    signs = [_signs(problem, found, (without, final), left, parts, similar)]
+    for acting in (others, [(cause, part) for cause, part in others if cause.instants]):
+        quiet = summed([part for _, part in acting], final) < LEAST_IN_ONE
+        if not MOSTLY < np.mean(quiet) < 1.0:
+            continue
+        signs.append(
+            _signs(
+                problem,
+                found,
+                (_among(without, quiet), _among(final, quiet)),
+                _structure(problem, _only(left.samples, quiet)),
+                [_only(np.sqrt(part), quiet) ** 2 for part in parts],
+                similar,
             )
+        )
     return max(signs, key=probability)
 
 

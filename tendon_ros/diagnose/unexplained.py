@@ -117,13 +117,12 @@ def stands_out_in_a_block(ready: Prepared, found: Found) -> bool:
 
 def _worst(problem: Problem, left: FloatArray) -> dict[str, float]:
     """Return by channel the noise power of the block in which most is left."""
-    found: dict[str, float] = {}
-    for n, c, span in problem.spans():
-        segment = problem.rollouts.segments[n]
-        block = np.floor(segment.time[problem.masks[n][c]] / BLOCK).astype(np.int64)
-        count = np.bincount(block)
-        power = np.bincount(block, weights=left[span] ** 2) / np.maximum(count, 1)
-        whole = power[count * segment.period >= TOLD * BLOCK]
-        name = segment.measured[c].sensor.channel
-        found[name] = max(found.get(name, 0.0), float(whole.max(initial=0.0)))
+    block = problem.clusters(BLOCK)
+    least = TOLD * BLOCK / problem.rollouts.segments[0].period
+    found = {}
+    for name, own in problem.channels().items():
+        count = np.bincount(block[own])
+        power = np.bincount(block[own], weights=left[own] ** 2)
+        whole = count >= least
+        found[name] = float(np.max(power[whole] / count[whole], initial=0.0))
     return found

@@ -11,7 +11,7 @@ from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, BRISTLED, CLOCK, COUNT, DRAWN, DRIVE, DRIVEN, DRUM, DRY,
+    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, BRISTLED, CLOCK, COUNT, DRAWN, DRIVE, DRUM, DRY,
     EPOCH, F, FIRST, Floats, Ints, LASH, M, MODE, MOTION, N, NEXT, PERIOD, ROOM, ROW, SLACK,
     SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
@@ -22,48 +22,46 @@ MOST_STEPS = 200_000  # between two ticks
 DONE, DIVERGED = 0, 1
 
 
-def longest(d: Ints, g: Ints, s: Floats) -> float:
+def longest(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> float:
     """
-    Return the longest step that may be taken [s].
+    Return the longest step that may be taken at time t [s].
 
     The error of a step sees what moves. Where signals push, what stands still may soon move:
     a step that strides over a rise and fall of the signal would never know.
     """
     if s[2] <= 1.0:
         return 1e300
+    most = LONGEST
     for i in range(N):
         if d[DRY + i] == 1 and g[MODE + i] == 0:
-            return LONGEST_STUCK
-    return LONGEST
+            most = LONGEST_STUCK
+    if d[BRISTLED] == 0:
+        return most
+    for i in range(N):
+        if d[DRIVE + i] == 1 and d[BRISTLE + i] >= 0:
+            most = min(most, one_way(m, d, w, s, t, i, most))
+    return most
 
 
-def turning(m: Floats, d: Ints, w: Floats, s: Floats, t: float) -> float:
+def one_way(m: Floats, d: Ints, w: Floats, s: Floats, t: float, i: int, most: float) -> float:
     """
-    Return for how long bristles at time t bend one way, or hardly bend [s].
+    Return for how long a pulley's given motion goes one way, or hardly at all [s], up to ``most``.
 
-    Once they are bent as far as they go nothing changes, whatever the step: it would stride over
-    a pulley's way back as if there were none.
+    Bristles that are bent as far as they go do not change, whatever the step: it would stride
+    over the pulley's way back as if there were none.
     """
-    if d[BRISTLED] == 0 or d[DRIVEN] == 0:
-        return 1e300
-    most = LONGEST
     samples = int(s[2])
     cell = int((t + SMALLEST - s[0]) * s[1])
-    for i in range(N):
-        if d[DRIVE + i] == 0 or d[BRISTLE + i] < 0:
-            continue
-        brief = BRIEF * m[BREAKAWAY + i] * s[1]
-        omega = w[START + N + i]
-        slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
-        near = max(cell, 0) + 1
-        while near < samples and near - cell < most * s[1]:
-            then = s[slopes + near]
-            if then * omega < 0.0 and abs(then) + abs(omega) > brief:
-                # as far as the last sample that goes its way, or the next one
-                end = s[0] + max(near - 1, cell + 1) / s[1]
-                most = min(most, max(end - t, SMALLEST))
-                break
-            near += 1
+    brief = BRIEF * m[BREAKAWAY + i] * s[1]
+    omega = w[START + N + i]
+    slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
+    near = max(cell, 0) + 1
+    while near < samples and near - cell < most * s[1]:
+        then = s[slopes + near]
+        if then * omega < 0.0 and abs(then) + abs(omega) > brief:
+            # as far as the last sample that goes its way, or the next one
+            return max(s[0] + max(near - 1, cell + 1) / s[1] - t, SMALLEST)
+        near += 1
     return most
 
 
@@ -117,7 +115,7 @@ def advance(
             for k in range(M):
                 w[SLACK_START + k] = w[SLACK + k]
             whole = stop - t
-            h = min(c[STEP], whole, longest(d, g, s), turning(m, d, w, s, t))
+            h = min(c[STEP], whole, longest(m, d, w, g, s, t))
             if h > 0.7 * whole and h < whole:
                 h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
             error = step(m, d, w, g, s, c, t, h)
