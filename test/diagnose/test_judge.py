@@ -56,7 +56,7 @@ def test_a_true_cause_spoils_nothing(ready):
 
 def test_a_wrong_cause_spoils_what_was_not_fitted(ready):
     found = found_with(ready.problem, FRICTION)
-    wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.12})
+    wrong = found.final.model.joined(Candidate('torque_bias', 'motor_M'), {'torque': 0.05})
     found.without.append(found.final)
     found.states.append(replace(found.final, model=wrong))
     assert spoils(ready, found, found.without[1])
@@ -129,7 +129,7 @@ def test_what_the_law_beside_it_may_get_wrong_is_no_cause(ready, beside, believe
 
 def test_the_law_beside_is_that_of_the_others_at_the_place(bench, measured_on):
     viscous = ('viscous_friction', 'pulley_3', {'damping': 0.5})
-    bias = ('torque_bias', 'motor_M', {'torque': 0.12})
+    bias = ('torque_bias', 'motor_M', {'torque': 0.05})
     ready = prepared([measured_on(bench, FRICTION, viscous, bias)], bench)
     found = found_with(ready.problem, FRICTION, viscous, bias)
     left = stays(ready, found.final)
