@@ -39,13 +39,13 @@ def longest(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> floa
         return most
     for i in range(N):
         if d[DRIVE + i] == 1 and d[BRISTLE + i] >= 0:
-            most = min(most, one_way(m, d, w, s, t, i, most))
+            most = min(most, one_way(m, d, w, s, t, i))
     return most
 
 
-def one_way(m: Floats, d: Ints, w: Floats, s: Floats, t: float, i: int, most: float) -> float:
+def one_way(m: Floats, d: Ints, w: Floats, s: Floats, t: float, i: int) -> float:
     """
-    Return for how long a pulley's given motion goes one way, or hardly at all [s], up to ``most``.
+    Return for how long a pulley's given motion goes one way, or hardly moves [s], at most LONGEST.
 
     Bristles that are bent as far as they go do not change, whatever the step: it would stride
     over the pulley's way back as if there were none.
@@ -56,13 +56,13 @@ def one_way(m: Floats, d: Ints, w: Floats, s: Floats, t: float, i: int, most: fl
     omega = w[START + N + i]
     slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
     near = max(cell, 0) + 1
-    while near < samples and near - cell < most * s[1]:
+    while near < samples and near - cell < LONGEST * s[1]:
         then = s[slopes + near]
         if then * omega < 0.0 and abs(then) + abs(omega) > brief:
             # as far as the last sample that goes its way, or the next one
             return max(s[0] + max(near - 1, cell + 1) / s[1] - t, SMALLEST)
         near += 1
-    return most
+    return LONGEST
 
 
 def gathers(w: Floats, g: Ints, index: int) -> bool:
