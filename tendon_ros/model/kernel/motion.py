@@ -11,7 +11,7 @@ from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, BRISTLED, CLOCK, COUNT, DRAWN, DRIVE, DRUM, DRY,
+    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, CLOCK, COUNT, DRAWN, DRIVE, DRUM, DRY,
     EPOCH, F, FIRST, Floats, Ints, LASH, M, MODE, MOTION, N, NEXT, PERIOD, ROOM, ROW, SLACK,
     SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
@@ -34,10 +34,7 @@ def longest(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> floa
     most = LONGEST
     for i in range(N):
         if d[DRY + i] == 1 and g[MODE + i] == 0:
-            most = LONGEST_STUCK
-    if d[BRISTLED] == 0:
-        return most
-    for i in range(N):
+            most = min(most, LONGEST_STUCK)
         if d[DRIVE + i] == 1 and d[BRISTLE + i] >= 0:
             most = min(most, one_way(m, d, w, s, t, i))
     return most
