@@ -9,7 +9,6 @@ not, the same file runs as plain Python, slower and to the same numbers within r
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 import contextlib
 from dataclasses import dataclass
 import fcntl
@@ -18,6 +17,7 @@ import hashlib
 import importlib.util
 import os
 from pathlib import Path
+import subprocess
 import sys
 import tempfile
 from threading import Lock
@@ -28,7 +28,9 @@ import numpy as np
 
 from tendon_ros import __version__
 from tendon_ros.base.errors import listed, SimulationError
+from tendon_ros.model import loading
 from tendon_ros.model.joining import decorated_source, joined_source
+from tendon_ros.model.loading import imported
 from tendon_ros.model.structure import Structure
 
 #: what an engine may be asked for
@@ -80,7 +82,7 @@ def engine_for(structure: Structure, kind: str = 'auto') -> Engine:
     :raises SimulationError: where the compiled one is asked for and numba is missing.
     """
     compiled = _is_compiled(kind)
-    return Engine(_stored(joined_source(structure, compiled=compiled)), compiled)
+    return Engine(_stored(joined_source(structure, compiled=compiled), ahead=compiled), compiled)
 
 
 @lru_cache(maxsize=8)
@@ -98,7 +100,7 @@ def engine_of(files: tuple[Path, ...], kind: str = 'auto') -> Engine:
     :raises SimulationError: where the compiled one is asked for and numba is missing.
     """
     compiled = _is_compiled(kind)
-    return Engine(_stored(decorated_source(files, compiled=compiled)), compiled)
+    return Engine(_stored(decorated_source(files, compiled=compiled), ahead=False), compiled)
 
 
 def _is_compiled(kind: str) -> bool:
@@ -113,7 +115,7 @@ def _is_compiled(kind: str) -> bool:
     return kind == 'compiled' or (kind == 'auto' and compiler_installed())
 
 
-def _stored(source: str) -> ModuleType:
+def _stored(source: str, *, ahead: bool) -> ModuleType:
     """Return the module of a source text, which is kept under its hash."""
     title = f'"""tendon_ros {__version__} kernel, written by the engine: not to be edited."""'
     source = f'{title}\n{source}'
@@ -121,7 +123,7 @@ def _stored(source: str) -> ModuleType:
     path = _cache_folder() / f'kernel_{digest}.py'
     if not path.exists() or path.read_text(encoding='utf-8') != source:
         _write_atomically(path, source)
-    return _load(path)
+    return _load(path, ahead=ahead)
 
 
 def _cache_folder() -> Path:
@@ -151,36 +153,30 @@ def _write_atomically(path: Path, text: str) -> None:
 _LOADING = Lock()
 
 
-def _load(path: Path) -> ModuleType:
-    with _LOADING:
-        return _loaded(path)
-
-
-def _loaded(path: Path) -> ModuleType:
-    name = f'tendon_ros_{path.stem}'
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    with contextlib.ExitStack() as undo, _one_compiles(path):
-        undo.callback(sys.modules.pop, name, None)
-        spec.loader.exec_module(module)
-        undo.pop_all()
-    return module
-
-
-@contextlib.contextmanager
-def _one_compiles(path: Path) -> Iterator[None]:
-    """
-    Let all processes but one wait for machine code that is not there yet.
-
-    Nodes that start together would each compile the same kernel, half a minute of a core.
-    """
-    with path.open('rb') as file:
-        if not any((path.parent / '__pycache__').glob(f'{path.stem}.*.nbi')):
+def _load(path: Path, *, ahead: bool) -> ModuleType:
+    """Import a file; ``ahead``: what is compiled when it is imported, is compiled before that."""
+    with _LOADING, path.open('rb') as file:
+        if ahead and not _machine_code(path):
             with contextlib.suppress(OSError):  # not every file system has locks
                 fcntl.flock(file, fcntl.LOCK_EX)
-        yield
+            if not _machine_code(path):
+                _compile(path)
+        return imported(path)
+
+
+def _machine_code(path: Path) -> bool:
+    """Return whether machine code of a file is kept beside it."""
+    return any((path.parent / '__pycache__').glob(f'{path.stem}.*.nbi'))
+
+
+def _compile(path: Path) -> None:
+    """
+    Let another process compile a file, see :mod:`tendon_ros.model.loading`.
+
+    Where that fails the file is compiled by who imports it, and says what is wrong. All processes
+    but one wait for it: nodes that start together would each compile the same kernel, half a
+    minute of a core.
+    """
+    command = [sys.executable, '-P', loading.__file__, str(path)]
+    with contextlib.suppress(OSError):
+        subprocess.run(command, capture_output=True, check=False)

@@ -112,9 +112,25 @@ def test_who_comes_while_another_process_compiles_waits_for_its_machine_code(tmp
     ):
         for one in (file, other):
             fcntl.flock(one, fcntl.LOCK_EX)
-        assert engine._load(known).ONE == 1
-        waiting = pool.submit(engine._load, kernel)
+        assert engine._load(known, ahead=True).ONE == 1
+        waiting = pool.submit(engine._load, kernel, ahead=True)
         time.sleep(0.2)
         assert not waiting.done()
         fcntl.flock(file, fcntl.LOCK_UN)
         assert waiting.result().ONE == 1
+
+
+@pytest.mark.skipif(not engine.compiler_installed(), reason='numba is not installed')
+def test_no_process_runs_a_kernel_that_it_has_compiled_itself(structure):
+    # it would round otherwise than the same code loaded
+    stats = engine.engine_for(structure, 'compiled').module.entered.stats
+    assert sum(stats.cache_hits.values()) == 1
+    assert not stats.cache_misses
+
+
+def test_a_file_that_no_other_process_can_import_tells_what_is_wrong(tmp_path):
+    broken = tmp_path / 'kernel_broken.py'
+    broken.write_text("raise LookupError('this law')")
+    for _ in range(2):
+        with pytest.raises(LookupError, match='this law'):
+            engine._load(broken, ahead=True)
