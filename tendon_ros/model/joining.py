@@ -19,7 +19,7 @@ from tendon_ros.model.laws import law_numbers
 from tendon_ros.model.structure import Structure
 
 #: the kernel's files, in the order in which they are joined; they are read, never imported
-PARTS = ('loops', 'forces', 'linear', 'rosenbrock', 'events', 'sensing', 'motion')
+PARTS = ('loops', 'bristles', 'forces', 'linear', 'rosenbrock', 'events', 'sensing', 'motion')
 
 #: how a law of each hook is called, and what "no law" returns
 CALLS = {

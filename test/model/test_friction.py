@@ -9,6 +9,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
+from tendon_ros.model.layout import arrays_of
+from tendon_ros.model.runner import Runner
 from tendon_ros.model.signals import Signals
 from tendon_ros.model.simulation import predict, Simulation
 
@@ -189,28 +191,63 @@ def test_a_trembling_takes_friction_away_from_holds_and_slow_motions(body):
     assert rows.effort[2100:, 0] == pytest.approx(held, rel=5e-3)
 
 
-@pytest.mark.parametrize('step', [1e-3, 4e-3])
-def test_bristles_follow_a_given_motion_that_turns_back_in_a_moment(body, step):
-    # an axis at 120 rad/s that stops within two samples, overshoots, stands, and goes back: its
-    # bristles bend within a thousandth of what it goes meanwhile
-    angle = 1e-3
-    shape = {'torque': 0.2, 'angle': angle}
-    one = body(effects=(EffectUse('presliding_friction', 'pulley_body', shape),))
-    one = replace(one, control_period=step)
-    time = step * np.arange(round(4.0 / step))
-    turns = np.arange(0.0, 4.2, 0.35)
-    speed = np.interp(time, turns, np.resize([0.0, 120.0, 120.0, -3.0, 0.0, -120.0], len(turns)))
-    speed[np.diff(np.floor(time / 0.35), append=0.0) > 0.0] *= -0.02
-    angles = step * np.cumsum(speed)
-    motion = Signals.smooth(0.0, step, angles[None, :])
-    rows = predict(one, motion, ('body',), len(time) - 1, tolerance=1e-4)
-    fine = np.linspace(0.0, time[-1], 40 * (len(time) - 1) + 1)
+def motor_that_turns_back(step, speed, every, until):
+    """Return a motion that stops within two samples, overshoots, stands and goes back."""
+    time = step * np.arange(round(until / step))
+    turns = np.arange(0.0, until + every, every)
+    speeds = speed * np.resize([0.0, 1.0, 1.0, -0.025, 0.0, -1.0], len(turns))
+    speeds = np.interp(time, turns, speeds)
+    speeds[np.diff(np.floor(time / every), append=0.0) > 0.0] *= -0.02
+    return Signals.smooth(0.0, step, (step * np.cumsum(speeds))[None, :])
+
+
+def bent_along(motion, angle, parts=400):
+    """Return how far bristles are bent at the samples of a motion: Dahl's law, bit by bit."""
+    samples = motion.value.shape[1]
+    time = motion.start + motion.step * np.arange(samples)
+    fine = np.linspace(time[0], time[-1], parts * (samples - 1) + 1)
     path = CubicHermiteSpline(time, motion.value[0], motion.slope[0])(fine)
     bent = [0.0]
     for way in np.diff(path):
         bent.append(np.sign(way) + (bent[-1] - np.sign(way)) * np.exp(-abs(way) / angle))
+    return np.array(bent[::parts])
+
+
+@pytest.mark.parametrize('tolerance', [1e-4, 1e-6])
+@pytest.mark.parametrize('sticking', [False, True])
+@pytest.mark.parametrize('step', [1e-3, 4e-3])
+def test_bristles_follow_a_given_motion_that_turns_back_in_a_moment(
+    bench_rig, step, sticking, tolerance
+):
+    # however long the steps are, and whatever sticks beside
+    rubs = [EffectUse('presliding_friction', 'pulley_M', {'torque': 0.2, 'angle': 1e-3})]
+    if sticking:
+        rubs += [EffectUse('coulomb_friction', f'pulley_{n}', {'torque': 1e4}) for n in '123']
+    rig = replace(bench_rig.five_pulleys(), control_period=step)
+    motion = motor_that_turns_back(step, 1.6, 0.12, 2.0)
+    rows = predict(
+        rig, motion, ['M'], motion.value.shape[1] - 1, effects=rubs, tolerance=tolerance
+    )
+    bent = bent_along(motion, 1e-3)
     assert np.count_nonzero(np.diff(np.sign(bent))) >= 6
-    assert -rows.dry_friction[:, 0] == pytest.approx(0.2 * np.array(bent[::40]), abs=0.02)
+    motor = rig.motor_names.index('M')
+    assert -rows.dry_friction[:, motor] == pytest.approx(0.2 * bent, abs=1e-5)
+
+
+def test_bristles_of_a_given_motion_are_carried_from_call_to_call(body):
+    shape = {'torque': 0.2, 'angle': 1e-3}
+    one = body(effects=(EffectUse('presliding_friction', 'pulley_body', shape),))
+    motion = motor_that_turns_back(1e-3, 1.6, 0.12, 0.6)
+    bent = bent_along(motion, 1e-3)
+    runner = Runner(one, arrays_of(one, prescribed={'body': 0}))
+    runner.rest({})
+    rows = [
+        runner.advance(np.zeros(0), count, every=1, smoothly=smoothly, signals=motion)
+        for count, smoothly in ((100, True), (130, False), (150, True))
+    ]
+    rubbed = np.concatenate([r.dry_friction[:, 0] for r in rows])
+    time = np.concatenate([r.time for r in rows])
+    assert -rubbed == pytest.approx(0.2 * bent[np.rint(1e3 * time).astype(int)], abs=1e-5)
 
 
 @pytest.mark.parametrize('names', [('gear',), ('gear', 'spindle', 'drum', 'jaw')], ids='-'.join)

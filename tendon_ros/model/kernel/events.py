@@ -11,14 +11,11 @@ from __future__ import annotations
 from tendon_ros.model.kernel.forces import evaluate, prescribe
 from tendon_ros.model.kernel.rosenbrock import between
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKAWAY, BRISTLE, BUDGET, CLOCK, COUNT, DRIVE, DRY, Floats, GAP, Ints, K, M, MODE, N,
+    ACTIVE, BUDGET, CLOCK, COUNT, DRIVE, DRY, Floats, GAP, Ints, K, M, MODE, N,
     NEXT, PENDING, SLACK, SLACK_START, START, TORQUE, TOUCH, TRIAL,
 )  # fmt: skip
 
-SLIDE, STICK, MEET, SLACKEN, REVERSE = 0, 1, 2, 3, 4  # kinds of events
-#: part of the angle over which bristles bend that a pulley goes in a step which need not end
-#: where it turns back
-BRIEF = 0.1
+SLIDE, STICK, MEET, SLACKEN = 0, 1, 2, 3  # kinds of events
 #: friction holds a little more than its budget: a pulley that has come to rest where the two are
 #: equal must not be let go, and caught again, by rounding
 GRIP = 1.0 + 1e-9
@@ -68,8 +65,6 @@ def due(w: Floats, g: Ints, kind: int, index: int, at: int) -> float:
         return GRIP * w[BUDGET + index] - abs(w[TORQUE + index])
     if kind == MEET:
         return w[GAP + index] if g[TOUCH + index] == 1 else -w[GAP + index]
-    if kind == REVERSE:
-        return w[at + N + index] if w[START + N + index] > 0.0 else -w[at + N + index]
     return w[SLACK + index] if w[SLACK_START + index] > 0.0 else -w[SLACK + index]
 
 
@@ -93,8 +88,7 @@ def locate(
         between(d, w, part, TRIAL)
         if kind != SLIDE:
             prescribe(m, d, w, s, t + part * h, TRIAL)
-            if kind != REVERSE:
-                evaluate(m, d, w, g, s, c, t + part * h, TRIAL)
+            evaluate(m, d, w, g, s, c, t + part * h, TRIAL)
         now = due(w, g, kind, index, TRIAL)
         if now > 0.0:
             low = part
@@ -109,8 +103,6 @@ def locate(
                 value *= 0.5
             side = -1
         if high - low < 1e-9 or (kind == SLIDE and abs(now) < 1e-13):
-            break
-        if kind == REVERSE and high - low < 1e-3:  # the law is the same a moment later
             break
     # a sliding pulley is stopped where it stands; all else ends on the side where it has happened
     return part if kind == SLIDE else high
@@ -128,10 +120,6 @@ def crossing(
         w[PENDING + i] = 1.0
         if d[DRY + i] == 1 and g[MODE + i] != 2:
             w[PENDING + i] = due(w, g, STICK if g[MODE + i] == 0 else SLIDE, i, NEXT)
-        elif d[DRIVE + i] == 1 and d[BRISTLE + i] >= 0 and w[START + N + i] != 0.0:
-            way = h * (abs(w[START + N + i]) + abs(w[NEXT + N + i]))
-            if way > BRIEF * m[BREAKAWAY + i]:
-                w[PENDING + i] = due(w, g, REVERSE, i, NEXT)
     for k in range(K):
         value = due(w, g, MEET, k, NEXT)
         w[PENDING + N + k] = value if value < -1e-12 else 1.0  # at rest on the wall: rounding
@@ -146,8 +134,6 @@ def crossing(
             which = n - N - K
             if n < N:
                 what = STICK if g[MODE + n] == 0 else SLIDE
-                if d[DRIVE + n] == 1:
-                    what = REVERSE
                 which = n
             elif n < N + K:
                 what = MEET

@@ -111,11 +111,6 @@ def outer(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> None:
         for z in range(d[ACTIVE]):
             if d[STATE_LOOP + z] == k:
                 w[OUTER + 2 * N + z] += w[J_A + z] * by_angle + w[J_B + z] * by_rate
-    for z in range(d[ACTIVE]):
-        i = d[STATE_PULLEY + z]
-        if i >= 0 and d[DRIVE + i] == 1:  # bristles bend as the pulley goes and gathers speed
-            w[OUTER + 2 * N + z] += w[J_A + z] * w[START + N + i]
-            w[OUTER + 2 * N + z] += w[J_B + z] * w[ACCELERATION + i]
     for k in range(K):
         push = 0.0
         for e in range(WIDTH):

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 
-from tendon_ros.model.kernel.events import begin, BRIEF, change, crossing, SLIDE, state_at
+from tendon_ros.model.kernel.bristles import bend
+from tendon_ros.model.kernel.events import begin, change, crossing, SLIDE, state_at
 from tendon_ros.model.kernel.forces import evaluate
 from tendon_ros.model.kernel.linear import hold, linearise, outer
 from tendon_ros.model.kernel.loops import clipped
 from tendon_ros.model.kernel.rosenbrock import step
 from tendon_ros.model.kernel.sensing import control, record, report, sense, SMALLEST
 from tendon_ros.model.kernel.structure import (
-    ACTIVE, BREAKAWAY, BREAKS, BRISTLE, CLOCK, COUNT, DRAWN, DRIVE, DRUM, DRY,
-    EPOCH, F, FIRST, Floats, Ints, LASH, M, MODE, MOTION, N, NEXT, PERIOD, ROOM, ROW, SLACK,
-    SLACK_START, START, STEP, SWITCH, TICK, U,
+    ACTIVE, BREAKS, CLOCK, COUNT, DRAWN, DRUM, DRY, EPOCH, F, FIRST, Floats, Ints, LASH, M, MODE,
+    N, NEXT, PERIOD, ROOM, ROW, SLACK, SLACK_START, START, STEP, SWITCH, TICK, U,
 )  # fmt: skip
 
 LONGEST, LONGEST_STUCK = 0.05, 0.005  # steps along signals [s]
@@ -22,44 +22,27 @@ MOST_STEPS = 200_000  # between two ticks
 DONE, DIVERGED = 0, 1
 
 
-def longest(m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, t: float) -> float:
+def longest(d: Ints, g: Ints, s: Floats) -> float:
     """
-    Return the longest step that may be taken at time t [s].
+    Return the longest step that may be taken [s].
 
     The error of a step sees what moves. Where signals push, what stands still may soon move:
     a step that strides over a rise and fall of the signal would never know.
     """
     if s[2] <= 1.0:
         return 1e300
-    most = LONGEST
     for i in range(N):
         if d[DRY + i] == 1 and g[MODE + i] == 0:
-            most = min(most, LONGEST_STUCK)
-        if d[DRIVE + i] == 1 and d[BRISTLE + i] >= 0:
-            most = min(most, one_way(m, d, w, s, t, i))
-    return most
-
-
-def one_way(m: Floats, d: Ints, w: Floats, s: Floats, t: float, i: int) -> float:
-    """
-    Return for how long a pulley's given motion goes one way, or hardly moves [s], at most LONGEST.
-
-    Bristles that are bent as far as they go do not change, whatever the step: it would stride
-    over the pulley's way back as if there were none.
-    """
-    samples = int(s[2])
-    cell = int((t + SMALLEST - s[0]) * s[1])
-    brief = BRIEF * m[BREAKAWAY + i] * s[1]
-    omega = w[START + N + i]
-    slopes = 4 + (int(s[3]) + d[MOTION + i]) * samples
-    near = max(cell, 0) + 1
-    while near < samples and near - cell < LONGEST * s[1]:
-        then = s[slopes + near]
-        if then * omega < 0.0 and abs(then) + abs(omega) > brief:
-            # as far as the last sample that goes its way, or the next one
-            return max(s[0] + max(near - 1, cell + 1) / s[1] - t, SMALLEST)
-        near += 1
+            return LONGEST_STUCK
     return LONGEST
+
+
+def finish(
+    m: Floats, d: Ints, w: Floats, g: Ints, s: Floats, c: Floats, t: float, h: float
+) -> None:
+    """Complete what a step has reached: bristles that follow from a motion, and all forces."""
+    bend(m, d, w, s, t, t + h, NEXT)
+    evaluate(m, d, w, g, s, c, t + h, NEXT)
 
 
 def gathers(w: Floats, g: Ints, index: int) -> bool:
@@ -112,7 +95,7 @@ def advance(
             for k in range(M):
                 w[SLACK_START + k] = w[SLACK + k]
             whole = stop - t
-            h = min(c[STEP], whole, longest(m, d, w, g, s, t))
+            h = min(c[STEP], whole, longest(d, g, s))
             if h > 0.7 * whole and h < whole:
                 h = 0.6 * whole  # two steps of similar size rather than a long and a tiny one
             error = step(m, d, w, g, s, c, t, h)
@@ -125,26 +108,26 @@ def advance(
             grown = h * clipped(0.9 / math.sqrt(math.sqrt(error + 1e-10)), 0.2, 5.0)
             c[STEP] = max(grown, c[STEP]) if h == whole else grown
             g[COUNT] += 1
-            evaluate(m, d, w, g, s, c, t + h, NEXT)
+            finish(m, d, w, g, s, c, t, h)
             part, kind, index = crossing(m, d, w, g, s, c, t, h)
             while part < 2.0:
                 long = h
                 h *= part
                 step(m, d, w, g, s, c, t, h)
-                evaluate(m, d, w, g, s, c, t + h, NEXT)
+                finish(m, d, w, g, s, c, t, h)
                 if kind == SLIDE:  # refine: the dense output is of lower order than the step
                     pace = w[F + N + index]
                     miss = w[NEXT + N + index]
                     if abs(miss) > 1e-12 and abs(miss) < 0.5 * h * abs(pace):
                         h -= miss / pace
                         step(m, d, w, g, s, c, t, h)
-                        evaluate(m, d, w, g, s, c, t + h, NEXT)
+                        finish(m, d, w, g, s, c, t, h)
                 if kind != SLIDE or long < SHORTEST or not gathers(w, g, index):
                     break
                 h = 0.1 * long
                 g[COUNT + 1] += 1
                 step(m, d, w, g, s, c, t, h)
-                evaluate(m, d, w, g, s, c, t + h, NEXT)
+                finish(m, d, w, g, s, c, t, h)
                 part, kind, index = crossing(m, d, w, g, s, c, t, h)
             if smoothly == 1:
                 report(m, d, w, g, s, c, t, h, noise, rows, every)

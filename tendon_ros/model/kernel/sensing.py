@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tendon_ros.model.kernel.bristles import bend
 from tendon_ros.model.kernel.events import state_at
 from tendon_ros.model.kernel.forces import evaluate, given_by, prescribe
 from tendon_ros.model.kernel.loops import clipped
@@ -153,6 +154,7 @@ def report(
         part = min((due_at - t) / h, 1.0)
         between(d, w, part, TRIAL)
         prescribe(m, d, w, s, due_at, TRIAL)
+        bend(m, d, w, s, t, due_at, TRIAL)
         evaluate(m, d, w, g, s, c, due_at, TRIAL)
         c[TICK] += ahead
         sense(m, d, w, c, noise, TRIAL, 0)
