@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Segment
-from tendon_ros.identify.step_size import fineness, ROUGHER, TOLERANCE
-from tendon_ros.model.instrument import Instrument
+from tendon_ros.identify.step_size import fineness, STEPS, TOLERANCE
+from tendon_ros.model.instrument import EffectUse, Instrument
 
 FloatArray = NDArray[np.float64]
 
-#: part of what the right model may be off that this may change of the file's. Dry friction makes
-#: it some five times more, and derivatives are taken from changes of a tenth
-UNNOTICED = 4e-3
+#: part of what the right model may be off that steps may be off: derivatives are taken from
+#: changes of a tenth
+UNNOTICED = 0.05
+#: friction that a machine may have whose file has none, as a part of what presses on it. Errors
+#: of steps fade where all is smooth; what sticks keeps them
+RUBS = 0.1
 
 
 def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
@@ -28,23 +32,37 @@ def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
     :return: a tolerance of a step [rad].
     """
     unit = fineness(instrument)
-    fine = _of_the_file(instrument, segments, unit * TOLERANCE)
-    for tolerance in (unit * step for step in ROUGHER):
-        rough = _of_the_file(instrument, segments, tolerance)
+    steps = [unit * step for step in STEPS]
+    rough = _doubted(instrument, segments, steps[0])
+    for tolerance, finer in pairwise(steps):
+        fine = _doubted(instrument, segments, finer)
+        if not all(np.isfinite(row).all() for row in (*rough, *fine)):
+            return unit * TOLERANCE  # the file's own model diverges
         changes = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(rough, fine, strict=True)]
-        # infinite where the file's own model diverges
-        if float(np.max(changes)) < UNNOTICED:
+        change = max(changes, default=0.0)
+        if change < UNNOTICED:
             return tolerance
-    return unit * TOLERANCE
+        rough = fine
+    return steps[-1]
 
 
-def _of_the_file(
+def _doubted(
     instrument: Instrument, segments: Sequence[Segment], tolerance: float
 ) -> list[FloatArray]:
-    """Return all channels as the file has them, by what the right model may be off."""
-    rows = Rollouts(instrument, segments, tolerance=tolerance).predicted([[] for _ in segments])
+    """Return all channels by what the right model may be off, without friction and with some."""
+    rollouts = Rollouts(instrument, segments, tolerance=tolerance)
+    as_written: list[list[EffectUse]] = [[] for _ in segments]
+    rubs = [
+        [
+            EffectUse('tension_friction', f'pulley_{name}', {'coefficient': RUBS})
+            for name in instrument.pulley_names
+            if name not in segment.prescribed
+        ]
+        for segment in segments
+    ]
     return [
         row / m.doubt
-        for segment, of_segment in zip(segments, rows, strict=True)
-        for m, row in zip(segment.measured, of_segment, strict=True)
+        for uses in (as_written, rubs)
+        for segment, rows in zip(segments, rollouts.predicted(uses), strict=True)
+        for m, row in zip(segment.measured, rows, strict=True)
     ]

@@ -18,7 +18,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
 from tendon_ros.identify.hearing import neighbours, unshared
 from tendon_ros.identify.rollout import Rollouts
-from tendon_ros.identify.step_size import fineness, ROUGHER
+from tendon_ros.identify.step_size import fineness, ROUGHER, STEPS
 from tendon_ros.identify.tolerance import Tolerance
 from tendon_ros.model.instrument import EffectUse
 
@@ -65,14 +65,15 @@ class Residuals:
 
     def rougher(self) -> Self:
         """
-        Return what first looks need: rollouts as rough as any may be, of a few recordings.
+        Return what first looks need: rougher rollouts of a few recordings.
 
         Of many runs, evenly picked ones tell which way to go.
         """
-        roughest = ROUGHER[0] * fineness(self.rollouts.instrument)
+        roughest = STEPS[0] * fineness(self.rollouts.instrument)
+        rough = min(roughest, ROUGHER * self.rollouts.tolerance)
         count = len(self._segments)
         picked = np.unique(np.linspace(0, count - 1, min(count, FEW)).round().astype(int))
-        rollouts = self.rollouts.like([self._segments[n] for n in picked], roughest)
+        rollouts = self.rollouts.like([self._segments[n] for n in picked], rough)
         return type(self)(rollouts, self.tolerances, [self._used[n] for n in picked])
 
     def toleranced(self, tolerances: Sequence[Tolerance]) -> Self:

@@ -6,8 +6,11 @@ from tendon_ros.model.instrument import Instrument
 
 #: [rad] a step; a hundredth of an encoder's count
 TOLERANCE = 4e-6
-#: the same where nothing that is measured notices, the roughest first
-ROUGHER = (1e-4, 2e-5)
+#: [rad] what rollouts may be integrated by, the roughest first. A load cell on a stiff contact
+#: notices a tenth of what encoders do
+STEPS = (1e-4, 2e-5, TOLERANCE, 1e-6, 2.5e-7, 6e-8)
+#: how much rougher first looks are, which go by much more than noise
+ROUGHER = 25.0
 #: [rad] counts that are finer ask for finer steps: on a straight axis a radian stands for a metre,
 #: and friction builds up over some micrometres
 FINE = 2e-5

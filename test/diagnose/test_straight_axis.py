@@ -7,7 +7,7 @@ import pytest
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.rollout import Rollouts
-from tendon_ros.identify.step_size import FINE, fineness, ROUGHER, TOLERANCE
+from tendon_ros.identify.step_size import FINE, fineness, STEPS, TOLERANCE
 from tendon_ros.model.instrument_file import load_instrument
 
 AXIS = """
@@ -40,8 +40,8 @@ def test_steps_are_as_fine_as_counts_ask_for(axis, bench, measured_on):
     ready = prepared([measured_on(axis, settings=SLOW, seed=2)], axis)
     fine = Rollouts(axis, ()).tolerance
     assert fine == pytest.approx(1e-3 * TOLERANCE)
-    assert fine <= ready.problem.rollouts.tolerance <= 1e-3 * ROUGHER[0]
-    assert ready.problem.rougher().rollouts.tolerance == pytest.approx(1e-3 * ROUGHER[0])
+    assert fine <= ready.problem.rollouts.tolerance <= 1e-3 * STEPS[0]
+    assert ready.problem.rougher().rollouts.tolerance == pytest.approx(1e-3 * STEPS[0])
 
 
 def test_friction_and_the_waves_of_its_screw_are_told(axis, measured_on, quick):
