@@ -30,6 +30,8 @@ MOVES = 2
 #: takes such derivatives anew where it seems to end
 FAR, LOOKS = 0.3, 1
 BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
+#: how often a fit that got stuck begins anew from nearby, and how near, on the axes
+KICKS, KICK = 3, 0.1
 #: accuracy from which on they are; and of fits that are as careful but for when events were
 CAREFUL, UNTIMED = 1e-3, 2e-3
 
@@ -110,9 +112,30 @@ class Problem(Slopes):
             is for comparing, does not.
         :return: the fit.
         """
-        fit = self._descended(model, known, rounds, accuracy)
-        careful = timed and accuracy <= CAREFUL
-        return self.timed(fit, rounds, accuracy) if careful else fit
+        fit, stuck = self._descended(model, known, rounds, accuracy)
+        if accuracy > CAREFUL:
+            return fit
+        if stuck:
+            fit = self._freed(fit, rounds, accuracy)
+        return self.timed(fit, rounds, accuracy) if timed else fit
+
+    def _freed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
+        """
+        Return the best of some fits that begin near one which got stuck.
+
+        Where friction lets go a moment earlier a hold may be another one: costs have cliffs, a
+        descent stops at the edge of one, and derivatives lead across it.
+        """
+        draw = np.random.default_rng(0)
+        low, high = self._bounds(fit.model).T
+        for _ in range(KICKS):
+            x = self.pack(fit.model)
+            x += KICK * draw.standard_normal(len(x)) * ~self.still(fit.model)
+            near = self.unpack(fit.model, np.clip(x, low, high))
+            other, _ = self._descended(near, None, rounds, accuracy)
+            if other.cost < fit.cost:
+                fit = other
+        return fit
 
     def timed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
         """
@@ -127,7 +150,7 @@ class Problem(Slopes):
             later = self._retimed(fit)
             if later is None:
                 break
-            fit = self._descended(later, self.slopes(fit), rounds, accuracy)
+            fit, _ = self._descended(later, self.slopes(fit), rounds, accuracy)
         return fit
 
     def _retimed(self, fit: Fit) -> Model | None:
@@ -166,8 +189,8 @@ class Problem(Slopes):
         known: Mapping[str, FloatArray] | None,
         rounds: int,
         accuracy: float,
-    ) -> Fit:
-        """Return the fit that Levenberg and Marquardt's method comes to."""
+    ) -> tuple[Fit, bool]:
+        """Return the fit that Levenberg and Marquardt's method comes to, whether it got stuck."""
         axes = self.axes(model)
         own = len(axes) - len(self.tolerances)
         still = self.still(model)
@@ -177,7 +200,7 @@ class Problem(Slopes):
         place = _computed(descent, np.clip(x, *self._bounds(model).T), own)
         if not math.isfinite(place.cost):  # the model diverges: nothing to fit from here
             nothing = np.zeros((len(place.left), len(axes)))
-            return Fit(self.unpack(model, place.x), place.left, nothing, math.inf)
+            return Fit(self.unpack(model, place.x), place.left, nothing, math.inf), False
         labels = self.labels(model)
         slope = np.zeros((len(place.left), len(axes)))
         fresh = []
@@ -201,6 +224,7 @@ class Problem(Slopes):
         tried = TRIES[:1] if guessed else TRIES
         anew = fresh
         told = slope[:, fresh]
+        stuck = False
         for _ in range(rounds):
             slope[:, anew] = self.slope(self.unpack(model, place.x), place.left, anew)
             anew = fresh
@@ -208,6 +232,7 @@ class Problem(Slopes):
             before = place.cost
             for tries in tried:
                 last, place = place, descent.step(place, slope, tries, accuracy)
+                stuck = descent.stuck
                 far = [j for j in guessed if abs(place.x[j] - taken[j]) > FAR]
                 follow(slope, far if guessed else fresh, last, place)
                 if last.cost - place.cost <= accuracy * last.cost:
@@ -221,7 +246,7 @@ class Problem(Slopes):
                 anew, far = [*fresh, *far], []
         # those that have followed a step on which all moved tell of each some of what others did
         slope[:, fresh] = told
-        return Fit(self.unpack(model, place.x), place.left, slope, place.cost)
+        return Fit(self.unpack(model, place.x), place.left, slope, place.cost), stuck
 
     def _bounds(self, model: Model) -> FloatArray:
         """Return between which places the unknowns of a model lie, shape (unknowns, 2)."""

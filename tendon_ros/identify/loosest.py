@@ -16,8 +16,8 @@ from tendon_ros.model.instrument import EffectUse, Instrument
 FloatArray = NDArray[np.float64]
 
 #: part of what the right model may be off that steps may be off: derivatives are taken from
-#: changes of a tenth
-UNNOTICED = 0.05
+#: changes of a tenth; twice that with friction, where a single hold makes as much
+UNNOTICED, STICKING = 0.05, 0.1
 #: friction that a machine may have whose file has none, as a part of what presses on it. Errors
 #: of steps fade where all is smooth; what sticks keeps them
 RUBS = 0.1
@@ -33,26 +33,8 @@ def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
     """
     unit = fineness(instrument)
     steps = [unit * step for step in STEPS]
-    rough = _doubted(instrument, segments, steps[0])
-    for tolerance, finer in pairwise(steps):
-        fine = _doubted(instrument, segments, finer)
-        if not all(np.isfinite(row).all() for row in (*rough, *fine)):
-            return unit * TOLERANCE  # the file's own model diverges
-        changes = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(rough, fine, strict=True)]
-        change = max(changes, default=0.0)
-        if change < UNNOTICED:
-            return tolerance
-        rough = fine
-    return steps[-1]
-
-
-def _doubted(
-    instrument: Instrument, segments: Sequence[Segment], tolerance: float
-) -> list[FloatArray]:
-    """Return all channels by what the right model may be off, without friction and with some."""
-    rollouts = Rollouts(instrument, segments, tolerance=tolerance)
-    as_written: list[list[EffectUse]] = [[] for _ in segments]
-    rubs = [
+    smooth: list[list[EffectUse]] = [[] for _ in segments]
+    sticking = [
         [
             EffectUse('tension_friction', f'pulley_{name}', {'coefficient': RUBS})
             for name in instrument.pulley_names
@@ -60,9 +42,23 @@ def _doubted(
         ]
         for segment in segments
     ]
-    return [
-        row / m.doubt
-        for uses in (as_written, rubs)
-        for segment, rows in zip(segments, rollouts.predicted(uses), strict=True)
-        for m, row in zip(segment.measured, rows, strict=True)
-    ]
+
+    def doubted(tolerance: float) -> list[FloatArray]:
+        """Return all channels by what the right model may be off, by what that may change."""
+        rollouts = Rollouts(instrument, segments, tolerance=tolerance)
+        return [
+            row / m.doubt / unnoticed
+            for uses, unnoticed in ((smooth, UNNOTICED), (sticking, STICKING))
+            for segment, rows in zip(segments, rollouts.predicted(uses), strict=True)
+            for m, row in zip(segment.measured, rows, strict=True)
+        ]
+
+    rough = doubted(steps[0])
+    for tolerance, finer in pairwise(steps):
+        fine = doubted(finer)
+        if not all(np.isfinite(row).all() for row in (*rough, *fine)):
+            return unit * TOLERANCE  # the file's own model diverges
+        if all(np.mean((a - b) ** 2) < 1.0 for a, b in zip(rough, fine, strict=True)):
+            return tolerance
+        rough = fine
+    return steps[-1]
