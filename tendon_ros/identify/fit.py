@@ -108,16 +108,14 @@ class Problem(Slopes):
             as :meth:`slopes` gives them; those by tolerances are found once where not known.
         :param rounds: at most so many.
         :param accuracy: relative gain of a round below which the fit ends.
-        :param timed: whether a careful fit looks for when events were as well; a rough one, which
-            is for comparing, does not.
+        :param timed: whether a careful fit looks for when events were as well, and gets away from
+            where it is stuck; a rough one, which is for comparing, does not.
         :return: the fit.
         """
         fit, stuck = self._descended(model, known, rounds, accuracy)
-        if accuracy > CAREFUL:
+        if not timed or accuracy > CAREFUL:
             return fit
-        if stuck:
-            fit = self._freed(fit, rounds, accuracy)
-        return self.timed(fit, rounds, accuracy) if timed else fit
+        return self.timed(self._freed(fit, rounds, accuracy) if stuck else fit, rounds, accuracy)
 
     def _freed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
         """
