@@ -230,11 +230,11 @@ class Problem(Slopes):
             before = place.cost
             for tries in tried:
                 last, place = place, descent.step(place, slope, tries, accuracy)
-                stuck = descent.stuck
                 far = [j for j in guessed if abs(place.x[j] - taken[j]) > FAR]
                 follow(slope, far if guessed else fresh, last, place)
                 if last.cost - place.cost <= accuracy * last.cost:
                     break
+            stuck = before - place.cost <= accuracy * before and descent.stuck
             if before - place.cost <= accuracy * before:
                 if not far or not looks:
                     break

@@ -154,7 +154,12 @@ _LOADING = Lock()
 
 
 def _load(path: Path, *, ahead: bool) -> ModuleType:
-    """Import a file; ``ahead``: what is compiled when it is imported, is compiled before that."""
+    """
+    Import a file; ``ahead``: what is compiled when it is imported, is compiled before that.
+
+    All processes but one wait for that: nodes that start together would each compile the same
+    kernel, half a minute of a core.
+    """
     with _LOADING, path.open('rb') as file:
         if ahead and not _machine_code(path):
             with contextlib.suppress(OSError):  # not every file system has locks
@@ -173,9 +178,7 @@ def _compile(path: Path) -> None:
     """
     Let another process compile a file, see :mod:`tendon_ros.model.loading`.
 
-    Where that fails the file is compiled by who imports it, and says what is wrong. All processes
-    but one wait for it: nodes that start together would each compile the same kernel, half a
-    minute of a core.
+    Where that fails the file is compiled by who imports it, and says what is wrong.
     """
     command = [sys.executable, '-P', loading.__file__, str(path)]
     with contextlib.suppress(OSError):

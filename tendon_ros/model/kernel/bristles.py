@@ -24,6 +24,7 @@ def piece(value: float, way: float, shaken: float, span: float) -> float:
     :param way: by how much the pulley turned [rad].
     :param shaken: by how much a trembling turned it meanwhile, there and back [rad].
     :param span: the angle over which they bend [rad].
+    :return: the part that acts then.
     """
     whole = abs(way) + shaken
     if whole <= 0.0:
@@ -43,6 +44,7 @@ def along(
     :param value: the part of the friction that acted before.
     :param span: the angle over which they bend [rad].
     :param dither: the speed of a trembling that lets them go [rad/s].
+    :return: the part that acts then.
     """
     samples = int(s[2])
     at = 4 + row * samples
