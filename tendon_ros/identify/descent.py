@@ -58,8 +58,6 @@ class Descent:
         self._still = still
         self._within = within
         self._damping = 1e-3
-        #: whether the last step promised enough, and no length of it kept that
-        self.stuck = False
 
     def at(self, x: FloatArray) -> Place:
         """
@@ -97,7 +95,6 @@ class Descent:
         # unknowns pressed against a bound stay there
         free = ~self._still & unpressed(place.x, self._bounds, gradient)
         damping = self._damping
-        self.stuck = False
         for _ in range(tries):
             way = np.zeros(len(place.x))
             way[free] = np.linalg.solve(
@@ -113,9 +110,7 @@ class Descent:
                 trial = self.at(x)
                 if np.isfinite(trial.cost) and trial.cost < place.cost:
                     self._damping = max(0.2 * damping, 1e-7)
-                    self.stuck = False
                     return trial
-                self.stuck = True
             damping *= 8.0
         return place
 

@@ -30,8 +30,6 @@ MOVES = 2
 #: takes such derivatives anew where it seems to end
 FAR, LOOKS = 0.3, 1
 BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
-#: how often a fit that got stuck begins anew from nearby, and how near, on the axes
-KICKS, KICK = 3, 0.1
 #: accuracy from which on they are; and of fits that are as careful but for when events were
 CAREFUL, UNTIMED = 1e-3, 2e-3
 
@@ -108,32 +106,13 @@ class Problem(Slopes):
             as :meth:`slopes` gives them; those by tolerances are found once where not known.
         :param rounds: at most so many.
         :param accuracy: relative gain of a round below which the fit ends.
-        :param timed: whether a careful fit looks for when events were as well, and gets away from
-            where it is stuck; a rough one, which is for comparing, does not.
+        :param timed: whether a careful fit looks for when events were as well; a rough one, which
+            is for comparing, does not.
         :return: the fit.
         """
-        fit, stuck = self._descended(model, known, rounds, accuracy)
-        if not timed or accuracy > CAREFUL:
-            return fit
-        return self.timed(self._freed(fit, rounds, accuracy) if stuck else fit, rounds, accuracy)
-
-    def _freed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
-        """
-        Return the best of some fits that begin near one which got stuck.
-
-        Where friction lets go a moment earlier a hold may be another one: costs have cliffs, a
-        descent stops at the edge of one, and derivatives lead across it.
-        """
-        draw = np.random.default_rng(0)
-        low, high = self._bounds(fit.model).T
-        for _ in range(KICKS):
-            x = self.pack(fit.model)
-            x += KICK * draw.standard_normal(len(x)) * ~self.still(fit.model)
-            near = self.unpack(fit.model, np.clip(x, low, high))
-            other, _ = self._descended(near, None, rounds, accuracy)
-            if other.cost < fit.cost:
-                fit = other
-        return fit
+        fit = self._descended(model, known, rounds, accuracy)
+        careful = timed and accuracy <= CAREFUL
+        return self.timed(fit, rounds, accuracy) if careful else fit
 
     def timed(self, fit: Fit, rounds: int, accuracy: float) -> Fit:
         """
@@ -148,7 +127,7 @@ class Problem(Slopes):
             later = self._retimed(fit)
             if later is None:
                 break
-            fit, _ = self._descended(later, self.slopes(fit), rounds, accuracy)
+            fit = self._descended(later, self.slopes(fit), rounds, accuracy)
         return fit
 
     def _retimed(self, fit: Fit) -> Model | None:
@@ -187,8 +166,8 @@ class Problem(Slopes):
         known: Mapping[str, FloatArray] | None,
         rounds: int,
         accuracy: float,
-    ) -> tuple[Fit, bool]:
-        """Return the fit that Levenberg and Marquardt's method comes to, whether it got stuck."""
+    ) -> Fit:
+        """Return the fit that Levenberg and Marquardt's method comes to."""
         axes = self.axes(model)
         own = len(axes) - len(self.tolerances)
         still = self.still(model)
@@ -198,7 +177,7 @@ class Problem(Slopes):
         place = _computed(descent, np.clip(x, *self._bounds(model).T), own)
         if not math.isfinite(place.cost):  # the model diverges: nothing to fit from here
             nothing = np.zeros((len(place.left), len(axes)))
-            return Fit(self.unpack(model, place.x), place.left, nothing, math.inf), False
+            return Fit(self.unpack(model, place.x), place.left, nothing, math.inf)
         labels = self.labels(model)
         slope = np.zeros((len(place.left), len(axes)))
         fresh = []
@@ -222,7 +201,6 @@ class Problem(Slopes):
         tried = TRIES[:1] if guessed else TRIES
         anew = fresh
         told = slope[:, fresh]
-        stuck = False
         for _ in range(rounds):
             slope[:, anew] = self.slope(self.unpack(model, place.x), place.left, anew)
             anew = fresh
@@ -234,7 +212,6 @@ class Problem(Slopes):
                 follow(slope, far if guessed else fresh, last, place)
                 if last.cost - place.cost <= accuracy * last.cost:
                     break
-            stuck = before - place.cost <= accuracy * before and descent.stuck
             if before - place.cost <= accuracy * before:
                 if not far or not looks:
                     break
@@ -244,7 +221,7 @@ class Problem(Slopes):
                 anew, far = [*fresh, *far], []
         # those that have followed a step on which all moved tell of each some of what others did
         slope[:, fresh] = told
-        return Fit(self.unpack(model, place.x), place.left, slope, place.cost), stuck
+        return Fit(self.unpack(model, place.x), place.left, slope, place.cost)
 
     def _bounds(self, model: Model) -> FloatArray:
         """Return between which places the unknowns of a model lie, shape (unknowns, 2)."""

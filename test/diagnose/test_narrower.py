@@ -33,8 +33,7 @@ def test_plain_friction_is_fitted_from_where_a_law_that_holds_it_has_gone(measur
     [plain] = [c for c in candidates if (c.effect, c.place) == true[:2]]
     assert bool(plain.given) is listed
     # more one way than the other, and the rest has gone along with it
-    sided = problem.empty.joined(SIDED, {'forward': 0.09, 'backward': 0.03})
-    state = problem.fitted(sided, timed=False)  # as carefully as the rival
+    state = problem.fitted(problem.empty.joined(SIDED, {'forward': 0.09, 'backward': 0.03}))
     begun = Begun(Steps(problem, candidates, 1, lambda *_: None))
     [rival] = begun.narrower(state, SIDED)
     assert rival.candidate == plain

@@ -36,9 +36,7 @@ def test_guesses_get_out_of_a_valley_in_which_one_cable_is_soft_for_another():
         t.axis.place(VALLEY[name]) if (name := f'{t.place}.{t.quantity}') in VALLEY else 0.0
         for t in problem.tolerances
     ]
-    # a careful fit finds out by itself here
-    begun = replace(problem.empty, moved=np.array(moved))
-    stuck = problem.fitted(begun, rounds=20, timed=False)
+    stuck = problem.fitted(replace(problem.empty, moved=np.array(moved)), rounds=20)
     out = nudged(Steps(problem, [], 1, lambda *_: None), stuck)
     assert out.cost < 0.95 * stuck.cost
     assert problem.structured(out.left) < 0.5 * problem.structured(stuck.left)
@@ -88,7 +86,7 @@ def test_a_ripple_gets_out_of_a_number_of_waves_that_is_not_its_own():
     problem = prepared([simulate(rig, turns, seed=1)], body).problem
     steps = Steps(problem, [ripple], 1, lambda *_: None)
     start = problem.fitted(problem.empty)
-    stuck = problem.fitted(problem.empty.joined(ripple, {**true, 'cycles': 12.5}), timed=False)
+    stuck = problem.fitted(problem.empty.joined(ripple, {**true, 'cycles': 12.5}))
     assert stuck.model.values(0)['cycles'] < 13.5
     out = waved(steps, stuck, 0, start)
     assert out.model.values(0)['cycles'] == pytest.approx(14.0, abs=0.05)

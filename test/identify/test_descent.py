@@ -123,19 +123,3 @@ def test_a_place_knows_its_cost():
     place = descent.at(np.array([2.0, 4.0]))
     assert isinstance(place, Place)
     assert place.cost == pytest.approx(1.0 + 8.0)
-
-
-def test_who_cannot_go_where_derivatives_lead_is_stuck():
-    # a saw whose teeth rise towards the cliff on their left
-    def saw(x):
-        return x[:1] + 1.0 - np.floor(x[:1] / 0.5)
-
-    stuck = Descent(saw, np.zeros(2), np.zeros(2), FAR, NONE)
-    place = stuck.at(np.array([0.5, 0.0]))
-    assert stuck.step(place, np.array([[1.0, 0.0]]), TRIES[0], 1e-3) is place
-    assert stuck.stuck
-    free = Descent(valley, np.zeros(2), np.zeros(2), FAR, NONE)
-    free.step(free.at(np.array([-1.2, 1.0])), slopes([-1.2, 1.0]), TRIES[0], 1e-12)
-    assert not free.stuck
-    free.step(free.at(np.ones(2)), slopes([1.0, 1.0]), TRIES[0], 1e-3)
-    assert not free.stuck

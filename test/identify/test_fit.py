@@ -9,7 +9,6 @@ import pytest
 from tendon_ros.diagnose.patch import patched
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate, starts
-from tendon_ros.identify.fit import KICKS, Problem
 from tendon_ros.identify.tolerance import tolerances
 from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
@@ -232,24 +231,3 @@ def test_friction_that_the_file_lists_builds_up_over_an_angle(measured_on):
     ).problem
     assert known.empty.bristle == {}
     assert np.mean(known.left(known.empty) ** 2) < 0.9 * rigid
-
-
-def test_a_fit_that_is_stuck_at_a_cliff_begins_anew_nearby(sound_problem, monkeypatch):
-    places = np.linspace(1.0, 2.0, len(sound_problem.tolerances))
-    begun = replace(sound_problem.empty, moved=places)
-    size = len(sound_problem.left(begun))
-
-    def teeth(_self, model, _among=None):
-        """Fall towards where the file is, each tooth of a saw the other way."""
-        left = np.zeros(size)
-        left[: len(model.moved)] = 10.0 + 10.0 * model.moved - 40.0 * (model.moved % 0.3)
-        return left
-
-    monkeypatch.setattr(Problem, 'left', teeth)
-    costs = []
-    for kicks in (0, KICKS):
-        monkeypatch.setattr('tendon_ros.identify.fit.KICKS', kicks)
-        costs.append(sound_problem.fitted(begun).cost)
-    assert costs[1] < 0.9 * costs[0]
-    # a fit that only compares is not asked again
-    assert sound_problem.fitted(begun, timed=False).cost == costs[0]
