@@ -127,13 +127,7 @@ def rub(m: Floats, d: Ints, w: Floats, g: Ints, at: int) -> None:
         return
     for i in range(N):
         z = d[BRISTLE + i]
-        if z >= 0 and d[DRIVE + i] == 1:  # they follow from the motion, see bend
-            w[STATE_RATE + z] = 0.0
-            w[STATE_A + z] = 0.0
-            w[STATE_B + z] = 0.0
-            w[STATE_Z + z] = 0.0
-            w[STATE_T + z] = 0.0
-        elif z >= 0:
+        if z >= 0:
             # Dahl's law in units of the breakaway angle: the state is the part of the budget used;
             # a trembling goes there and back, and only takes away from it
             omega = w[at + N + i]
@@ -238,6 +232,8 @@ def evaluate(
             if d[DRIVE + i] == 1:
                 w[F + i] = 0.0
                 w[F + N + i] = 0.0
+                if d[BRISTLE + i] >= 0:  # they follow from the motion, see bend
+                    w[STATE_RATE + d[BRISTLE + i]] = 0.0
     for z in range(d[ACTIVE]):
         w[F + 2 * N + z] = w[STATE_RATE + z]
 
