@@ -10,11 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
 from tendon_ros.diagnose.asking import lost, signless
+from tendon_ros.diagnose.creeping import left_to_chance
 from tendon_ros.diagnose.enough import KEPT
-from tendon_ros.diagnose.form import creep_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import NAMED
@@ -30,8 +28,6 @@ from tendon_ros.diagnose.unexplained import (
 from tendon_ros.diagnose.worth import (
     beyond_laws,
     hopeless,
-    LEAST,
-    LEAST_IN_ONE,
     worthwhile,
 )
 from tendon_ros.identify.afar import swings
@@ -73,7 +69,7 @@ class Looks:
         self._memory = memory
         self._patience = patience
         #: what the last look that counts has found
-        self.found = self._look(by, memory)
+        self.found = self._look(by, memory, waits=True)
 
     def taken(self) -> tuple[Prepared, Found]:
         """
@@ -83,6 +79,7 @@ class Looks:
         """
         for rule in (
             self._weighed,
+            self._unchallenged,
             self._without_sign,
             self._back_with_guesses,
             self._without_events,
@@ -99,6 +96,8 @@ class Looks:
         begun: Model | None,
         memory: Memory | None = None,
         among: Sequence[Candidate] | None = None,
+        *,
+        waits: bool = False,
     ) -> Found:
         """Search, from a model or from nothing, among all candidates or some."""
         asked = self._candidates if among is None else among
@@ -111,6 +110,7 @@ class Looks:
             begun,
             self._patience,
             self.ready.held,
+            waits=waits,
         ).run()
 
     def _again(self, why: str) -> None:
@@ -133,6 +133,14 @@ class Looks:
         if self._memory is not None:
             self._memory.weigh(by)
         self.found = self._look(by, self._memory)
+
+    def _unchallenged(self) -> None:
+        """Doubt what laws may get wrong before anything is challenged, where holds are chance."""
+        if self.found.unchallenged is None:
+            return
+        again = self.ready.heard_again(self.found.final.model)
+        self.ready = again if again.quieter(self.ready) else self.ready
+        self._doubt()
 
     def _without_sign(self) -> None:
         """
@@ -222,16 +230,16 @@ class Looks:
         What stays there is chance, and outweighs what causes are worth elsewhere.
         """
         problem, start, final = self.ready.problem, self.found.start, self.found.final
-        if problem.by_misfit or not self._worth_more():
+        if not self._worth_more() or unexplained(self.ready, self.found, final) < NAMED:
             return
-        if unexplained(self.ready, self.found, final) < NAMED:
-            return
-        holds = creep_profile(problem, start, final) > LEAST
-        if problem.structured(np.where(holds, final.left, 0.0)) < LEAST_IN_ONE:
-            return
+        if left_to_chance(problem, start, final):
+            self._doubt()
+
+    def _doubt(self) -> None:
+        start, final = self.found.start.model, self.found.final.model
         self._again('where friction holds, much of what stays is chance')
-        self.ready = self.ready.allowing(start.model, final.model)
-        self.found = self._look(final.model)
+        self.ready = self.ready.allowing(start, final)
+        self.found = self._look(final)
 
     def _loosened(self) -> None:
         """Know the file's numbers less well: some are no causes where others are off as far."""

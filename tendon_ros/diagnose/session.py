@@ -20,6 +20,7 @@ from tendon_ros.diagnose.belief import belief
 from tendon_ros.diagnose.bodies import alone
 from tendon_ros.diagnose.clock import early_words
 from tendon_ros.diagnose.closed_loop import closed_loop_gap
+from tendon_ros.diagnose.creeping import beside_chance
 from tendon_ros.diagnose.doubts import (
     absurd_words,
     brief_words,
@@ -139,6 +140,8 @@ def diagnose(
     final = clear.fitted(model, rounds=6, accuracy=1e-4)
     if end:
         final = heard.problem.fitted(final.model, rounds=0)
+    else:
+        heard, final = beside_chance(heard, found.start.model, final)
     file = heard.problem.written
     # numbers that went along with something unknown say nothing of the machine
     astray = not kept and foretells(heard.held, final.model, file)

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tendon_ros.diagnose import looks
+from tendon_ros.base.recording import Channel
+from tendon_ros.diagnose import looks, search
+from tendon_ros.diagnose.creeping import beside_chance, left_to_chance
 from tendon_ros.diagnose.form import creep_profile, form_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.sticking import sticking
@@ -20,16 +23,21 @@ SAID = 'looking again: where friction holds, much of what stays is chance'
 
 
 @pytest.fixture(scope='module')
-def holding(bench, measured_on):
-    """Return a recording in contact, with holds in which friction of 3 holds, made ready."""
-    run = measured_on(
+def rubbing(bench, measured_on):
+    """Return a recording in contact, with holds in which friction of 3 holds."""
+    return measured_on(
         bench,
         ('coulomb_friction', 'pulley_3', {'torque': 0.3}),
         trajectory='paper_fig12',
         settings=(),
         touching=True,
     )
-    return prepared([run], bench)
+
+
+@pytest.fixture(scope='module')
+def holding(bench, rubbing):
+    """Return that recording made ready."""
+    return prepared([rubbing], bench)
 
 
 def fits(problem, *causes):
@@ -86,13 +94,14 @@ def test_a_bin_counts_the_less_the_more_laws_may_get_wrong_of_it(holding):
 def test_much_that_stays_where_friction_holds_asks_for_another_look(
     holding, monkeypatch, there, off, looks_again
 ):
-    said, doubted = [], []
+    said, doubted, waited = [], [], []
 
     class Searching:
         """Ends with the friction, and leaves something where it holds, or where it turns."""
 
-        def __init__(self, problem: Problem, *_):
+        def __init__(self, problem: Problem, *_, waits: bool):
             self.problem = problem
+            waited.append(waits)
             doubted.append(float(np.max(problem.doubted)))
 
         def run(self):
@@ -108,3 +117,35 @@ def test_much_that_stays_where_friction_holds_asks_for_another_look(
     assert (SAID in said) is looks_again
     assert doubted[0] == 1.0
     assert (max(doubted) > 2.0) is looks_again
+    # once it has been looked again for that, there is nothing to wait for
+    assert waited == [True, *(False for _ in waited[1:])]
+
+
+def test_a_search_waits_with_challenges_where_holds_are_chance(holding, monkeypatch):
+    problem = holding.problem
+    waiting = Search(problem, [RUBS], 1, waits=True)
+    monkeypatch.setattr(search, 'left_to_chance', lambda *_: True)
+    found = waiting.run()
+    assert found.unchallenged is found.final
+    assert not found.without
+    found = Search(problem, [RUBS], 1).run()
+    assert found.unchallenged is None
+    assert [c.place for c in found.final.model.causes] == ['pulley_3']
+    assert len(found.without) == 1
+
+
+def test_sizes_are_fitted_beside_what_holds_leave_to_chance(bench, rubbing, holding):
+    """What a hold is off by chance moves a size, unless it is doubted."""
+    start, right = fits(holding.problem, (RUBS, {'torque': 0.3}))
+    assert beside_chance(holding, start.model, right) == (holding, right)
+    cell = rubbing.channels['load_cell/force']
+    once, again = (np.abs(cell.time - about) < 0.75 for about in (3.75, 8.75))
+    elsewhere = Channel(cell.name, cell.time, cell.value + 1.0 * once - 1.0 * again)
+    ready = prepared([rubbing.with_channels([elsewhere])], bench)
+    problem = ready.problem
+    plain = problem.fitted(right.model)
+    assert left_to_chance(problem, problem.fitted(start.model, rounds=0), plain)
+    doubting, careful = beside_chance(ready, start.model, plain)
+    assert np.any(doubting.problem.doubted > 1.0)
+    off, less = (abs(fit.model.values(0)['torque'] - 0.3) for fit in (plain, careful))
+    assert less < 0.5 * off

@@ -1,0 +1,53 @@
+"""Friction that creeps while it holds: where a pulley stands then is chance; fits beside that."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tendon_ros.diagnose.form import creep_profile
+from tendon_ros.diagnose.further import foretells
+from tendon_ros.diagnose.prepare import Prepared
+from tendon_ros.diagnose.worth import LEAST, LEAST_IN_ONE
+from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.fit import Fit, Problem
+
+TURNS = 3  # of doubting laws by a fit, and fitting anew
+
+
+def left_to_chance(problem: Problem, start: Fit, state: Fit) -> bool:
+    """
+    Return whether much of what stays, stays where friction holds.
+
+    :param problem: the data.
+    :param start: without any cause.
+    :param state: with them, and with its derivatives.
+    :return: whether it is more than a cause has to be worth.
+    """
+    if problem.by_misfit:
+        return False
+    holds = creep_profile(problem, start, state) > LEAST
+    return problem.structured(np.where(holds, state.left, 0.0)) >= LEAST_IN_ONE
+
+
+def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, Fit]:
+    """
+    Return a fit in which samples count the less, the more laws may get wrong of them.
+
+    Sizes that were fitted to holds by chance foretell what no fit has seen the worse.
+
+    :param ready: the problem.
+    :param start: without any cause.
+    :param state: a fit.
+    :return: the problem with these doubts, and the fit; both as they were where holds leave
+        little, or where the fit would foretell less.
+    """
+    problem = ready.problem
+    doubted = bool(np.any(problem.doubted > 1.0))
+    if not doubted and not left_to_chance(problem, problem.fitted(start, rounds=0), state):
+        return ready, state
+    allowing, fit = ready, state
+    for _ in range(TURNS):
+        allowing = allowing.allowing(start, fit.model)
+        fit = allowing.problem.fitted(fit.model, accuracy=1e-4)
+    better = foretells(ready.held, state.model, fit.model)
+    return (allowing, fit) if better else (ready, state)
