@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from tendon_ros.diagnose.form import creep_profile
@@ -29,25 +31,48 @@ def left_to_chance(problem: Problem, start: Fit, state: Fit) -> bool:
     return problem.structured(np.where(holds, state.left, 0.0)) >= LEAST_IN_ONE
 
 
-def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, Fit]:
+def doubting(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit]:
     """
     Return a fit in which samples count the less, the more laws may get wrong of them.
 
-    Sizes that were fitted to holds by chance foretell what no fit has seen the worse.
+    Holds that were fitted by chance take numbers of the file far off, from where a descent does
+    not find back: it begins from where these are likely to be as well.
+
+    :param ready: the problem.
+    :param start: without any cause.
+    :param model: with causes.
+    :return: the problem with these doubts, and the fit.
+    """
+    ready, fit = _doubted(ready, start, model)
+    for _ in range(TURNS - 1):
+        ready, fit = _doubted(ready, start, fit.model)
+    return ready, fit
+
+
+def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, Fit]:
+    """
+    Return a fit that does not rest on what holds leave to chance.
+
+    Sizes that were fitted to that foretell what no fit has seen the worse.
 
     :param ready: the problem.
     :param start: without any cause.
     :param state: a fit.
-    :return: the problem with these doubts, and the fit; both as they were where holds leave
-        little, or where the fit would foretell less.
+    :return: the problem with doubts, and the fit; both as they were where holds leave little, or
+        where the fit would not foretell more.
     """
     problem = ready.problem
     doubted = bool(np.any(problem.doubted > 1.0))
     if not doubted and not left_to_chance(problem, problem.fitted(start, rounds=0), state):
         return ready, state
-    allowing, fit = ready, state
-    for _ in range(TURNS):
-        allowing = allowing.allowing(start, fit.model)
-        fit = allowing.problem.fitted(fit.model, accuracy=1e-4)
+    doubted_again, fit = doubting(ready, start, state.model)
     better = foretells(ready.held, state.model, fit.model)
-    return (allowing, fit) if better else (ready, state)
+    return (doubted_again, fit) if better else (ready, state)
+
+
+def _doubted(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit]:
+    """Return the problem with doubts by a model, and the better fit from there."""
+    ready = ready.allowing(start, model)
+    begun = (model, replace(model, moved=ready.problem.begun.moved))
+    fits = [ready.problem.fitted(one, accuracy=1e-4) for one in begun]
+    return ready, min(fits, key=lambda fit: fit.cost)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tendon_ros.diagnose.asking import lost, signless
-from tendon_ros.diagnose.creeping import left_to_chance
+from tendon_ros.diagnose.creeping import doubting, left_to_chance
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.memory import Memory
@@ -238,8 +238,8 @@ class Looks:
     def _doubt(self) -> None:
         start, final = self.found.start.model, self.found.final.model
         self._again('where friction holds, much of what stays is chance')
-        self.ready = self.ready.allowing(start, final)
-        self.found = self._look(final)
+        self.ready, begun = doubting(self.ready, start, final)
+        self.found = self._look(begun.model)
 
     def _loosened(self) -> None:
         """Know the file's numbers less well: some are no causes where others are off as far."""
