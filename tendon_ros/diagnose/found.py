@@ -26,8 +26,7 @@ class Found:
     ``without``: for each cause of the last state, who was fitted in its place, and the fit
     without it. ``unmet``: causes in whose place nobody was fitted, for want of time.
     ``proposals``: of the first screening, the best of each candidate. ``unweighed``: where it
-    stopped early, since channels should weigh by what this state leaves of them. ``unchallenged``:
-    where it stopped before the first challenge, since laws should be doubted by this state.
+    stopped early, since channels should weigh by what this state leaves of them.
     """
 
     states: list[Fit] = field(default_factory=list)
@@ -36,7 +35,6 @@ class Found:
     proposals: list[Proposal] = field(default_factory=list)
     unmet: list[Candidate] = field(default_factory=list)
     unweighed: Fit | None = None
-    unchallenged: Fit | None = None
 
     @property
     def start(self) -> Fit:

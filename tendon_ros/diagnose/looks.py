@@ -69,7 +69,7 @@ class Looks:
         self._memory = memory
         self._patience = patience
         #: what the last look that counts has found
-        self.found = self._look(by, memory, waits=True)
+        self.found = self._look(by, memory)
 
     def taken(self) -> tuple[Prepared, Found]:
         """
@@ -79,7 +79,6 @@ class Looks:
         """
         for rule in (
             self._weighed,
-            self._unchallenged,
             self._without_sign,
             self._back_with_guesses,
             self._without_events,
@@ -96,8 +95,6 @@ class Looks:
         begun: Model | None,
         memory: Memory | None = None,
         among: Sequence[Candidate] | None = None,
-        *,
-        waits: bool = False,
     ) -> Found:
         """Search, from a model or from nothing, among all candidates or some."""
         asked = self._candidates if among is None else among
@@ -110,7 +107,6 @@ class Looks:
             begun,
             self._patience,
             self.ready.held,
-            waits=waits,
         ).run()
 
     def _again(self, why: str) -> None:
@@ -133,14 +129,6 @@ class Looks:
         if self._memory is not None:
             self._memory.weigh(by)
         self.found = self._look(by, self._memory)
-
-    def _unchallenged(self) -> None:
-        """Doubt what laws may get wrong before anything is challenged, where holds are chance."""
-        if self.found.unchallenged is None:
-            return
-        again = self.ready.heard_again(self.found.final.model)
-        self.ready = again if again.quieter(self.ready) else self.ready
-        self._doubt()
 
     def _without_sign(self) -> None:
         """
@@ -232,13 +220,10 @@ class Looks:
         problem, start, final = self.ready.problem, self.found.start, self.found.final
         if not self._worth_more() or unexplained(self.ready, self.found, final) < NAMED:
             return
-        if left_to_chance(problem, start, final):
-            self._doubt()
-
-    def _doubt(self) -> None:
-        start, final = self.found.start.model, self.found.final.model
+        if not left_to_chance(problem, start, final):
+            return
         self._again('where friction holds, much of what stays is chance')
-        self.ready, begun = doubting(self.ready, start, final)
+        self.ready, begun = doubting(self.ready, start.model, final.model)
         self.found = self._look(begun.model)
 
     def _loosened(self) -> None:

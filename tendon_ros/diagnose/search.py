@@ -14,7 +14,6 @@ import numpy as np
 
 from tendon_ros.diagnose.asking import asked_again
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.creeping import left_to_chance
 from tendon_ros.diagnose.everywhere import without_idle
 from tendon_ros.diagnose.first import FirstRound
 from tendon_ros.diagnose.found import Found
@@ -53,7 +52,6 @@ class Search:
     :param begun: what an earlier search found in the same recordings.
     :param patience: once it has run out, the search ends with what it has.
     :param held: blocks that no fit sees: of a machine, they tell which causes more there are.
-    :param waits: whether it ends before the first challenge where much of what stays is chance.
     """
 
     def __init__(
@@ -66,11 +64,8 @@ class Search:
         begun: Model | None = None,
         patience: Patience | None = None,
         held: Problem | None = None,
-        *,
-        waits: bool = False,
     ) -> None:
         self.problem = problem
-        self._waits = waits
         self._held = held
         self._steps = Steps(problem, candidates, jobs, report, patience)
         # a first look from where nothing is known tells later whom to look at more closely
@@ -84,8 +79,7 @@ class Search:
         Search.
 
         :return: what was found; what holds of all that is usual, and no more, where channels
-            should weigh by what it leaves of them; what was found without a challenge, where laws
-            should be doubted first.
+            should weigh by what it leaves of them.
         """
         found = Found()
         self._steps.report('fitting the tolerances', 0.0)
@@ -134,9 +128,6 @@ class Search:
                 continue
             if challenged is state:
                 break
-            if self._waits and left_to_chance(self.problem, found.start, state):
-                found.unchallenged = state
-                return found
             # better causes may leave more to see: look again where a challenge has changed them
             brief = self._of_a_machine(found)
             self._challenge.of(found, brief=brief)

@@ -38,7 +38,7 @@ def test_a_push_that_leaves_much_is_done_without(slipped, monkeypatch, first, se
     class Searching:
         """Ends with one cause, with another one where it may not have it, or where it begins."""
 
-        def __init__(self, problem: Problem, among, jobs, report, memory, begun, *_, **__):
+        def __init__(self, problem: Problem, among, jobs, report, memory, begun, *_):
             self.problem, self.begun = problem, begun
             self.whole = len(among) == len(candidates)
             asked.append({(c.effect, c.place) for c in among})

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose import looks, search
+from tendon_ros.diagnose import looks
 from tendon_ros.diagnose.creeping import beside_chance, left_to_chance
 from tendon_ros.diagnose.form import creep_profile, form_profile
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.sticking import sticking
@@ -94,14 +93,13 @@ def test_a_bin_counts_the_less_the_more_laws_may_get_wrong_of_it(holding):
 def test_much_that_stays_where_friction_holds_asks_for_another_look(
     holding, monkeypatch, there, off, looks_again
 ):
-    said, doubted, waited = [], [], []
+    said, doubted = [], []
 
     class Searching:
         """Ends with the friction, and leaves something where it holds, or where it turns."""
 
-        def __init__(self, problem: Problem, *_, waits: bool):
+        def __init__(self, problem: Problem, *_):
             self.problem = problem
-            waited.append(waits)
             doubted.append(float(np.max(problem.doubted)))
 
         def run(self):
@@ -117,21 +115,6 @@ def test_much_that_stays_where_friction_holds_asks_for_another_look(
     assert (SAID in said) is looks_again
     assert doubted[0] == 1.0
     assert (max(doubted) > 2.0) is looks_again
-    # once it has been looked again for that, there is nothing to wait for
-    assert waited == [True, *(False for _ in waited[1:])]
-
-
-def test_a_search_waits_with_challenges_where_holds_are_chance(holding, monkeypatch):
-    problem = holding.problem
-    waiting = Search(problem, [RUBS], 1, waits=True)
-    monkeypatch.setattr(search, 'left_to_chance', lambda *_: True)
-    found = waiting.run()
-    assert found.unchallenged is found.final
-    assert not found.without
-    found = Search(problem, [RUBS], 1).run()
-    assert found.unchallenged is None
-    assert [c.place for c in found.final.model.causes] == ['pulley_3']
-    assert len(found.without) == 1
 
 
 def test_sizes_are_fitted_beside_what_holds_leave_to_chance(bench, rubbing, holding):

@@ -127,7 +127,7 @@ def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
     class Searching:
         """Ends where it would have gone astray, unless it begins beside the sign."""
 
-        def __init__(self, problem, candidates, jobs, report, memory, begun, *_, **__):
+        def __init__(self, problem, candidates, jobs, report, memory, begun, *_):
             self.problem, self.begun = problem, begun
             begun_from.append(begun)
 
@@ -161,7 +161,7 @@ def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
     class Searching:
         """Goes astray."""
 
-        def __init__(self, problem, *_, **__):
+        def __init__(self, problem, *_):
             self.problem = problem
 
         def run(self):
@@ -200,7 +200,7 @@ def test_a_sign_is_asked_beside_what_was_found_without_it(axis, recorded, monkey
     class Searching:
         """Finds the bias, and the sign only where it begins beside both."""
 
-        def __init__(self, problem, candidates, jobs, report, memory, begun, *_, **__):
+        def __init__(self, problem, candidates, jobs, report, memory, begun, *_):
             self.problem, self.begun = problem, begun
             begun_from.append(frozenset() if begun is None else frozenset(begun.causes))
 
