@@ -62,12 +62,14 @@ def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, 
         where the fit would not foretell more.
     """
     problem = ready.problem
+    if not any(cause.dry for cause in state.model.causes):
+        return ready, state
     doubted = bool(np.any(problem.doubted > 1.0))
     if not doubted and not left_to_chance(problem, problem.fitted(start, rounds=0), state):
         return ready, state
-    doubted_again, fit = doubting(ready, start, state.model)
+    anew, fit = doubting(ready, start, state.model)
     better = foretells(ready.held, state.model, fit.model)
-    return (doubted_again, fit) if better else (ready, state)
+    return (anew, fit) if better else (ready, state)
 
 
 def _doubted(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit]:
