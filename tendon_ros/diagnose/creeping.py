@@ -59,7 +59,7 @@ def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, 
     :param start: without any cause.
     :param state: a fit.
     :return: the problem with doubts, and the fit; both as they were where holds leave little, or
-        where the fit would not foretell more.
+        where, with these doubts, the fit foretells no more.
     """
     problem = ready.problem
     if not any(cause.dry for cause in state.model.causes):
@@ -68,7 +68,7 @@ def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, 
     if not doubted and not left_to_chance(problem, problem.fitted(start, rounds=0), state):
         return ready, state
     anew, fit = doubting(ready, start, state.model)
-    better = foretells(ready.held, state.model, fit.model)
+    better = foretells(anew.held, state.model, fit.model)
     return (anew, fit) if better else (ready, state)
 
 
