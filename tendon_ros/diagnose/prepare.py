@@ -19,7 +19,7 @@ from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.loosest import loosest
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import ENDING, Segment, SETTLING
-from tendon_ros.identify.tolerance import tolerances
+from tendon_ros.identify.tolerance import Tolerance, tolerances
 from tendon_ros.model.instrument import Instrument
 
 FloatArray = NDArray[np.float64]
@@ -49,7 +49,19 @@ class Prepared:
 
     def _on(self, rollouts: Rollouts) -> Prepared:
         """Return the same with other rollouts."""
-        return _problems(rollouts, self.noise, self.shift, self.looser, self.likely)
+        other = _problems(rollouts, self.noise, self.shift, self.looser, self.likely)
+        return other.toleranced(self.problem.tolerances)
+
+    def toleranced(self, tolerances: Sequence[Tolerance]) -> Prepared:
+        """
+        Return the same with other tolerances.
+
+        :param tolerances: what may move.
+        :return: the problems.
+        """
+        problems = (self.problem, self.held, self.whole)
+        problem, held, whole = (one.toleranced(tolerances) for one in problems)
+        return replace(self, problem=problem, held=held, whole=whole)
 
     def heard_again(self, model: Model) -> Prepared:
         """
@@ -216,15 +228,11 @@ class Prepared:
         if not self.likely:
             return self
 
-        def free(problem: Problem) -> Problem:
-            moving = [
+        return self.toleranced(
+            [
                 replace(t, axis=replace(t.axis, repeated=False)) if t.guessed else t
-                for t in problem.tolerances
+                for t in self.problem.tolerances
             ]
-            return problem.toleranced(moving)
-
-        return replace(
-            self, problem=free(self.problem), held=free(self.held), whole=free(self.whole)
         )
 
 

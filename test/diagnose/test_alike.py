@@ -81,6 +81,18 @@ def test_what_is_likely_makes_no_interval_narrower(ready, leant):
     assert ready.unleant() is ready
 
 
+def test_what_leans_on_nothing_stays_so_where_laws_are_doubted(leant):
+    free = leant.unleant()
+    doubting = free.allowing(free.problem.empty, free.problem.empty)
+    for problem, was in zip(
+        (doubting.problem, doubting.held, doubting.whole),
+        (free.problem, free.held, free.whole),
+        strict=True,
+    ):
+        assert problem.tolerances == was.tolerances
+        assert len(problem.predicted(problem.empty)) == len(was.predicted(was.empty))
+
+
 def test_where_motion_drives_guesses_stay_with_the_file(measured_on):
     axis = load_instrument('driven_axis')
     ready = prepared([measured_on(axis)], axis)
