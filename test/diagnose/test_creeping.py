@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose import looks
+from tendon_ros.diagnose import creeping, looks
 from tendon_ros.diagnose.creeping import beside_chance, left_to_chance
 from tendon_ros.diagnose.form import creep_profile, form_profile
 from tendon_ros.diagnose.found import Found
@@ -132,3 +132,21 @@ def test_sizes_are_fitted_beside_what_holds_leave_to_chance(bench, rubbing, hold
     assert np.any(doubting.problem.doubted > 1.0)
     off, less = (abs(fit.model.values(0)['torque'] - 0.3) for fit in (plain, careful))
     assert less < 0.5 * off
+
+
+def test_sizes_stay_where_doubts_foretell_no_more(holding, monkeypatch):
+    start, right = fits(holding.problem, (RUBS, {'torque': 0.3}))
+    monkeypatch.setattr(creeping, 'left_to_chance', lambda *_: True)
+    monkeypatch.setattr(creeping, 'foretells', lambda *_: False)
+    assert beside_chance(holding, start.model, right) == (holding, right)
+    monkeypatch.setattr(creeping, 'foretells', lambda *_: True)
+    doubting, careful = beside_chance(holding, start.model, right)
+    # within what its law may be wrong by
+    assert careful.model.values(0)['torque'] == pytest.approx(0.3, rel=0.06)
+    assert np.any(doubting.problem.doubted > 1.0)
+
+
+def test_only_what_rubs_is_left_to_chance(holding, monkeypatch):
+    start, gained = fits(holding.problem, (GAIN, {'gain': 1.1}))
+    monkeypatch.setattr(creeping, 'left_to_chance', lambda *_: True)
+    assert beside_chance(holding, start.model, gained) == (holding, gained)
