@@ -43,9 +43,9 @@ def doubting(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit
     :param model: with causes.
     :return: the problem with these doubts, and the fit.
     """
-    ready, fit = _doubted(ready, start, model)
+    ready, fit = _turn(ready, start, model)
     for _ in range(TURNS - 1):
-        ready, fit = _doubted(ready, start, fit.model)
+        ready, fit = _turn(ready, start, fit.model)
     return ready, fit
 
 
@@ -72,7 +72,7 @@ def beside_chance(ready: Prepared, start: Model, state: Fit) -> tuple[Prepared, 
     return (anew, fit) if better else (ready, state)
 
 
-def _doubted(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit]:
+def _turn(ready: Prepared, start: Model, model: Model) -> tuple[Prepared, Fit]:
     """Return the problem with doubts by a model, and the better fit from there."""
     ready = ready.allowing(start, model)
     begun = (model, replace(model, moved=ready.problem.begun.moved))

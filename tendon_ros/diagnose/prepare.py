@@ -49,8 +49,8 @@ class Prepared:
 
     def _on(self, rollouts: Rollouts) -> Prepared:
         """Return the same with other rollouts."""
-        other = _problems(rollouts, self.noise, self.shift, self.looser, self.likely)
-        return other.toleranced(self.problem.tolerances)
+        known = self.noise, self.shift, self.looser, self.likely
+        return _problems(rollouts, self.problem.tolerances, *known)
 
     def toleranced(self, tolerances: Sequence[Tolerance]) -> Prepared:
         """
@@ -85,7 +85,7 @@ class Prepared:
             )
             for was, now in zip(before, noise.given(before, predicted), strict=True)
         ]
-        return _problems(rollouts.like(segments), noise, self.shift, self.looser, self.likely)
+        return replace(self, noise=noise)._on(rollouts.like(segments))
 
     def unrepeated(self, model: Model) -> Prepared:
         """
@@ -197,7 +197,7 @@ class Prepared:
         :param shift: by how many blocks to move them.
         :return: the problems.
         """
-        return _problems(self.whole.rollouts, self.noise, shift, self.looser, self.likely)
+        return replace(self, shift=shift)._on(self.whole.rollouts)
 
     def loosened(self, looser: float) -> Prepared:
         """
@@ -206,7 +206,9 @@ class Prepared:
         :param looser: times what is usual.
         :return: the problems.
         """
-        return _problems(self.whole.rollouts, self.noise, self.shift, looser, self.likely)
+        moving = tolerances(self.whole.rollouts.instrument, looser)
+        wider = replace(self, looser=looser).toleranced(moving)
+        return wider.leaning(self.likely) if self.likely else wider
 
     def leaning(self, likely: Sequence[float]) -> Prepared:
         """
@@ -215,7 +217,11 @@ class Prepared:
         :param likely: place of each tolerance on its axis.
         :return: the problems.
         """
-        return _problems(self.whole.rollouts, self.noise, self.shift, self.looser, tuple(likely))
+        moving = [
+            replace(t, axis=replace(t.axis, likely=z))
+            for t, z in zip(self.problem.tolerances, likely, strict=True)
+        ]
+        return replace(self, likely=tuple(likely)).toleranced(moving)
 
     def unleant(self) -> Prepared:
         """
@@ -247,11 +253,13 @@ def prepared(recordings: Sequence[Recording], instrument: Instrument, jobs: int 
     """
     binned = in_bins(recordings, instrument)
     tolerance = loosest(instrument, binned.segments)
-    return _problems(Rollouts(instrument, binned.segments, jobs, tolerance), binned.noise)
+    rollouts = Rollouts(instrument, binned.segments, jobs, tolerance)
+    return _problems(rollouts, tolerances(instrument), binned.noise)
 
 
 def _problems(
     rollouts: Rollouts,
+    moving: Sequence[Tolerance],
     noise: Noise,
     shift: int = 0,
     looser: float = 1.0,
@@ -260,11 +268,6 @@ def _problems(
     segments = rollouts.segments
     usable = [(s.time > SETTLING) & (s.time < s.time[-1] - ENDING) for s in segments]
     held = held_out(segments, shift)
-    moving = tolerances(rollouts.instrument, looser)
-    if likely:
-        moving = tuple(
-            replace(t, axis=replace(t.axis, likely=z)) for t, z in zip(moving, likely, strict=True)
-        )
     return Prepared(
         Problem(rollouts, moving, [u & ~h for u, h in zip(usable, held, strict=True)]),
         Problem(rollouts, moving, [u & h for u, h in zip(usable, held, strict=True)]),
