@@ -21,6 +21,7 @@ from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
 from tendon_ros.identify.starting import BEGUN, between_recordings, LASTS
 from tendon_ros.identify.waves import shows, travel
+from tendon_ros.model.numbers import place_index
 
 #: periods of the controllers within which a delay is theirs
 HOLDS = 0.75
@@ -55,7 +56,7 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     :param values: of its parameters.
     :return: whether: into another effect that has a name of its own, an event that always lasts,
         a delay that a controller's hold makes, a ripple of which not half a wave was
-        seen, friction that never yields, a number of the file within its tolerance.
+        seen, friction or a loop that never yields, a number of the file within its tolerance.
     """
     if _is_tolerated(problem, candidate, values):
         return True
@@ -78,6 +79,11 @@ def degenerate(problem: Problem, candidate: Candidate, values: Mapping[str, floa
     if candidate.effect == 'presliding_friction':
         far = travel(problem, candidate.place.removeprefix('pulley_'))
         if far is not None and values['angle'] > YIELDS * far:
+            return True
+    if candidate.effect == 'cable_hysteresis':
+        _, cable = place_index(problem.rollouts.instrument, candidate.place)
+        # a loop that has no room to turn in is a line
+        if values['elongation'] > problem.rollouts.stretches[cable]:
             return True
     return (simpler(candidate, values) or biased(problem, candidate, values)) is not None
 

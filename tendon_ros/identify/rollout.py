@@ -176,6 +176,17 @@ class Rollouts:
         last = self._rolled(0, ())[0].angle[-1]
         return {name: float(last[base.index(name)]) for name in base.inner}
 
+    @cached_property
+    def stretches(self) -> FloatArray:
+        """By how much each cable is let out and stretched by the file [m], shape (loops,)."""
+        routing = self.instrument.routing()[: len(self.instrument.loops)]
+        try:
+            rows = self.states([()] * len(self.segments))
+        except SimulationError:
+            return np.full(len(routing), np.inf)
+        travels = [np.ptp(row.angle @ routing.T, axis=0) for row in rows]
+        return np.asarray(np.max(travels, axis=0), dtype=np.float64)
+
     def states(self, uses: Sequence[Sequence[EffectUse]]) -> list[Rows]:
         """
         Return what the model does inside, bin by bin.

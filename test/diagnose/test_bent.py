@@ -37,6 +37,9 @@ LOAD = (Candidate('tension_friction', 'pulley_3'), {'coefficient': 0.1})
         # and friction that yields over 17 degrees of them is a spring
         ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.3}, True),
         ('presliding_friction', 'pulley_M', {'torque': 0.1, 'angle': 0.03}, False),
+        # as is a loop that builds up over more than a cable is ever stretched
+        ('cable_hysteresis', 'cable_12', {'force': 200.0, 'elongation': 0.01}, True),
+        ('cable_hysteresis', 'cable_12', {'force': 2.0, 'elongation': 1e-4}, False),
         # a spring that is relaxed turns away is a bias of the motor, where there is one
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 20.0}, True),
         ('joint_spring', 'pulley_M', {'stiffness': 0.01, 'rest': 2.0}, False),
