@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d as highest
+from scipy.ndimage import minimum_filter1d as lowest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.model.instrument import Sensor
@@ -58,8 +60,11 @@ def binned(
     mean = moment[known] / count[known]
     apart, first, back = np.unique(mean, return_index=True, return_inverse=True)
     if apart.size > 2:
-        slope = np.gradient(value[known][first], apart)[back]
-        value[known] -= slope * (mean - middles[known])
+        one = value[known][first]
+        # where what was flat falls all at once, its slope would lead beyond all that was read
+        low, high = (extreme(one, 3, mode='nearest')[back] for extreme in (lowest, highest))
+        moved = value[known] - np.gradient(one, apart)[back] * (mean - middles[known])
+        value[known] = np.clip(moved, low, high)
     quantised = sensor.resolution / np.sqrt(12.0)
     readings = count[known] ** 2 / squares[known]
     per_bin = max(1.0, float(np.median(readings))) if known.any() else 1.0

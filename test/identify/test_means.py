@@ -56,3 +56,16 @@ def test_stamps_that_scatter_leave_a_reading_in_every_bin(scatter, off, begin):
 def test_a_jump_stays_a_jump():
     jump = np.where(np.arange(BINS) < 90, 0.0, 1.0)[None]
     assert np.array_equal(averaged(jump, np.array([10.0])), jump)
+
+
+def test_what_falls_all_at_once_was_never_higher_before():
+    """A reading is missing where a limit lets go: the slope after it says nothing of before."""
+    time = PERIOD * (np.arange(BINS) + 0.5)
+    value = np.clip(2.5 - 30.0 * (time - time[100]), 1.0, 2.5)
+    missing = np.arange(BINS) != 99
+    stamps = time + np.where(np.arange(BINS) == 100, 0.4 * PERIOD, 0.0)
+    channel = Channel(SENSOR.channel, stamps[missing], value[missing])
+    means, _, _ = binned(channel, SENSOR, 0.0, PERIOD, BINS)
+    assert np.nanmax(means) == 2.5
+    # beside, nothing changes
+    assert np.allclose(means[:99], value[:99])
