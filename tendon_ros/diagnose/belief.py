@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import (
     at_bound,
+    far_fetched,
     is_constant,
     is_counted,
     spent,
@@ -53,6 +54,8 @@ FloatArray = NDArray[np.float64]
 ALIKE = 5
 #: part of a size by which a cause may change where what stands for something unknown goes
 STEADY = 0.2
+#: part of the gap that an encoder or a body explains at least which is further off than any is
+MOST = 0.5
 
 
 @dataclass(frozen=True)
@@ -251,4 +254,11 @@ def _open(problem: Problem, found: Found, k: int) -> bool:
         or spent(cause, model.values(k))
         or excuses(problem, model, k)
         or vanishes(problem, model, k)
+        or (far_fetched(cause, model.values(k)) and not _most(problem, found, k))
     )
+
+
+def _most(problem: Problem, found: Found, k: int) -> bool:
+    """Return whether a cause explains most of the gap, as a wrong unit or column would."""
+    without, start = (problem.structured(f.left) for f in (found.without[k], found.start))
+    return without > MOST * start

@@ -43,6 +43,10 @@ SPENT = 1.5
 WIDE = 0.98
 #: times its inertia that no body has by mistake
 OVER = 10.0
+#: times its angle that an encoder reads at most, and times its inertia that a body has by a
+#: diameter taken for a radius. By a tenth one is off where a lever is not what it should be; what
+#: is further off was taken for something else, a unit or a column
+MISCOUNTED, MISTAKEN = 1.25, 4.0
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
 
@@ -183,6 +187,19 @@ def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
     if candidate.effect == 'inertia' and not 1.0 / OVER < values['scale'] < OVER:
         return True
     return any(_is_at_bound(p, values[p.name]) for p in candidate.parameters if not p.is_shape)
+
+
+def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether an encoder or a body would be further off than any is but by mistake.
+
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
+    if candidate.effect == 'encoder_gain':
+        return not 1.0 / MISCOUNTED < values['gain'] < MISCOUNTED
+    return candidate.effect == 'inertia' and not 1.0 / MISTAKEN < values['scale'] < MISTAKEN
 
 
 def _is_at_bound(parameter: Parameter, value: float) -> bool:

@@ -56,7 +56,7 @@ def closed_loop_gap(
     """
     if loose := before.uncontrolled:
         commanded = any(name.startswith('setpoint/') for r in recordings for name in r.channels)
-        said = f'no closed loop: {before.name} has no controller of {listed(loose)}'
+        said = f'no closed loop: the instrument file has no controller of motor {listed(loose)}'
         return ClosedLoop(left_out=(said,) if commanded else ())
     traces: list[Trace] = []
     floors: dict[str, list[FloatArray]] = {}

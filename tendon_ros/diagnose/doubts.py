@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.base.errors import listed
 from tendon_ros.base.recording import Recording
+from tendon_ros.diagnose.bent import far_fetched
 from tendon_ros.diagnose.evidence import Moved
 from tendon_ros.diagnose.gap import noise_of, offs
 from tendon_ros.diagnose.prepare import Prepared
@@ -23,9 +24,6 @@ FloatArray = NDArray[np.float64]
 
 #: times that a motor's torque is weaker than it can be
 WEAK = 20.0
-#: times that an encoder may be off before it is taken for something else than an encoder's gain:
-#: one by a tenth happens, where a lever is not what it should be
-MISCOUNTED = 1.25
 #: part of what an angle varies by, and times its noise, beyond which it is not foretold at all
 LOST, UNFORETOLD = 0.5, 10.0
 #: times its noise that a channel is off from which on one wants to know when; and the part of that
@@ -147,14 +145,15 @@ def scaled_words(final: Model, contested: Collection[Candidate] = ()) -> list[st
     gains = [
         (cause.place, final.values(k)['gain'])
         for k, cause in enumerate(final.causes)
-        if cause.effect == 'encoder_gain' and cause not in contested
+        if cause.effect == 'encoder_gain'
+        and cause not in contested
+        and far_fetched(cause, final.values(k))
     ]
     return [
         f'{place} would read {gain:.3g} times its angle, and no encoder is that far off: a unit '
         '(degrees as rad), its counts a turn, a gear ratio or a column that was taken for another '
         'is likelier than any effect'
         for place, gain in gains
-        if not 1.0 / MISCOUNTED < gain < MISCOUNTED
     ]
 
 

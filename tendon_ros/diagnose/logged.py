@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 POLLED = 0.5
 #: part of what an angle that is off does, as power, that is the same as what a count does
 ALIKE = 0.8
-ZERO = 'encoder_offset'
+ZERO, GAIN = 'encoder_offset', 'encoder_gain'
 
 
 def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -31,16 +31,20 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     :param problem: the data.
     :param candidate: an effect.
     :param values: of its parameters.
-    :return: whether it is a delay below half of the time between samples, or an angle that is off
-        by a count or so: a counter that leaves out the rest reads half a count less. So does
-        whatever a motor turns whose counter does.
+    :return: whether it is a delay below half of the time between samples, an angle that is off by
+        a count or so, or the scale of a joint's that is over all that it turns: a counter that
+        leaves out the rest reads half a count less. So does whatever a motor turns whose counter
+        does.
     """
     if candidate.effect == 'sensor_delay':
         return values['time'] < POLLED * max(s.sampling for s in problem.rollouts.segments)
-    if candidate.effect != ZERO:
-        return False
     instrument = problem.rollouts.instrument
     counts = {s.name: s.resolution for s in instrument.sensors if s.kind == 'angle'}
+    if candidate.effect == GAIN:
+        far = abs(values['gain'] - 1.0) * _turned(problem, candidate.place)
+        return bool(far < COUNTED * counts.get(candidate.place, 0.0))
+    if candidate.effect != ZERO:
+        return False
     if abs(values['angle']) < COUNTED * counts.get(candidate.place, 0.0):
         return True
     motors = [d.sensor.name for d in drives(instrument) if not d.by_torque]
@@ -50,6 +54,17 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
         for name in motors
         if name != candidate.place and counts.get(name, 0.0) > 0.0
     )
+
+
+def _turned(problem: Problem, encoder: str) -> float:
+    """Return how far what an encoder reads turned [rad]; infinite if that drives the model."""
+    read = [
+        float(np.ptp(m.value[np.isfinite(m.value)]))
+        for segment in problem.rollouts.segments
+        for m in segment.measured
+        if m.sensor.name == encoder and np.isfinite(m.value).any()
+    ]
+    return max(read, default=np.inf)
 
 
 def _change(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> FloatArray:
@@ -81,6 +96,9 @@ def logged_words(model: Model, which: Sequence[int]) -> str:
         if 'time' in values:
             late = f'{place} is late by {1e3 * values["time"]:.1f} ms'
             said.append(f'{late}, less than half of the time between samples')
+        elif 'gain' in values:
+            off = f'{place} reads {values["gain"]:.5g} times its angle'
+            said.append(f'{off}, over all that it turns a count of it or so')
         else:
             off = f'{place} reads {1e3 * values["angle"]:.2g} mrad off'
             said.append(f'{off}, a count of the encoders or so')

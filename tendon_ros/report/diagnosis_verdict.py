@@ -110,7 +110,8 @@ def headline(diagnosis: Diagnosis) -> str:
                 f'certainty.{lies}'
             )
         nothing = f'Nothing in the catalogue explains the {gap} with any certainty.'
-        if after != before:
+        # where numbers alone foretell as well, nothing else has shrunk it
+        if after != before and not _by_numbers(diagnosis):
             nothing += f' {like} it to {after}.'
         return nothing + lies
     named = _named(diagnosis)
@@ -176,6 +177,12 @@ def _does_most(diagnosis: Diagnosis) -> bool:
     _, after = overall(diagnosis)
     alone = fitted_alone(diagnosis)
     return alone**2 - after**2 > MOST * max(alone**2 - 1.0, 0.0)
+
+
+def _by_numbers(diagnosis: Diagnosis) -> bool:
+    """Return whether a gap shrinks, and by no more than fitted numbers alone do."""
+    before, after = overall(diagnosis)
+    return fitted_alone(diagnosis) <= after < before
 
 
 def _shrinks(diagnosis: Diagnosis) -> str:

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from tendon_ros.diagnose import session
-from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.belief import _open, belief
 from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
@@ -185,6 +185,25 @@ def test_a_factor_at_its_bound_is_no_cause(found_of):
         chances.append(belief(ready, ended).weighed[1].chance)
     assert chances[0] > IDLE >= max(chances[1:])
     assert not spent(COULOMB, {'torque': 1e5})
+
+
+@pytest.mark.parametrize(
+    ('cause', 'values', 'far'),
+    [
+        (Candidate('encoder_gain', 'encoder_M'), {'gain': 1.4}, True),
+        (Candidate('encoder_gain', 'encoder_M'), {'gain': 1.2}, False),
+        (Candidate('inertia', 'pulley_M'), {'scale': 0.2}, True),
+        (Candidate('inertia', 'pulley_M'), {'scale': 3.0}, False),
+    ],
+)
+def test_what_is_further_off_than_any_is_has_to_explain_most(found_of, cause, values, far):
+    """A stop takes the torque that an inertia needs; a wrong unit is behind all of a gap."""
+    ready, found = found_of((cause, values))
+    problem = ready.problem
+    found.states[-1] = replace(found.final, model=problem.empty.joined(cause, values))
+    assert not _open(problem, found, 0)  # without it, all of the gap is left
+    found.without[0] = replace(found.start, left=0.3 * found.start.left)
+    assert _open(problem, found, 0) is far
 
 
 def test_others_are_judged_without_what_is_at_its_bound(found_of, monkeypatch):

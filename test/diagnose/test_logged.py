@@ -42,6 +42,25 @@ def test_an_angle_that_is_off_within_a_count_is_no_fault(bench, measured_on, cou
     assert words.startswith(f'encoder_2 reads {1e3 * counts * COUNT:.2g} mrad off, a count of')
 
 
+@pytest.mark.parametrize(('counts', 'loggers'), [(0.6, True), (-1.2, True), (3.0, False)])
+def test_a_scale_that_is_off_within_a_count_over_all_that_turns_is_no_fault(
+    bench, measured_on, counts, loggers
+):
+    problem = prepared([measured_on(bench)], bench).problem
+    [turned] = [
+        np.ptp(m.value)
+        for segment in problem.rollouts.segments
+        for m in segment.measured
+        if m.sensor.name == 'encoder_2'
+    ]
+    scale, values = Candidate('encoder_gain', 'encoder_2'), {'gain': 1.0 + counts * COUNT / turned}
+    assert is_logged(problem, scale, values) is loggers
+    words = logged_words(problem.empty.joined(scale, values), [0])
+    assert words.startswith(f'encoder_2 reads {values["gain"]:.5g} times its angle, over all')
+    # what drives the model is told by all that it moves
+    assert not is_logged(problem, Candidate('encoder_gain', 'encoder_M'), {'gain': 1.0 + 1e-5})
+
+
 @pytest.mark.parametrize(('counts', 'loggers'), [(0.5, True), (-0.5, True), (3.0, False)])
 def test_a_motor_whose_counter_cuts_off_shifts_what_it_turns(
     measured_on, tmp_path, counts, loggers

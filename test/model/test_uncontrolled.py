@@ -55,4 +55,5 @@ def test_a_recording_is_diagnosed_without_a_closed_loop(measured_on):
     diagnosis = diagnose([run], loose, plan=False).diagnosis
     assert [(c.effect, c.place) for c in diagnosis.causes] == [friction[:2]]
     assert diagnosis.closed_loop == ()
-    assert 'no closed loop: single_body has no controller of body' in diagnosis.left_out
+    said = 'no closed loop: the instrument file has no controller of motor body'
+    assert said in diagnosis.left_out

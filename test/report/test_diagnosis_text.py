@@ -100,6 +100,13 @@ def test_a_gap_that_grows_where_nothing_was_fitted_is_said_to(case):
     assert ' grows ' in headline(grown)
 
 
+def test_what_numbers_alone_do_as_well_is_not_said_to_shrink_a_gap(case):
+    diagnosis = case('unexplained')[0]
+    fitted = {g.channel: 0.9 * g.after for g in diagnosis.gap}
+    assert ' shrinks ' in headline(diagnosis)
+    assert ' shrinks ' not in headline(diagnosis.model_copy(update={'fitted': fitted}))
+
+
 def test_a_gap_without_a_form_does_not_contradict_itself(case):
     diagnosis, _ = case('no_gap')
     floor = diagnosis.gap[0].noise_floor
