@@ -13,6 +13,7 @@ from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.waves import travel
 
 FloatArray = NDArray[np.float64]
 
@@ -32,7 +33,7 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether it is a delay below half of the time between samples, an angle that is off by
-        a count or so, or the scale of a joint's that is over all that it turns: a counter that
+        a count or so, or a scale that is over all that it turns: a counter that
         leaves out the rest reads half a count less. So does whatever a motor turns whose counter
         does.
     """
@@ -42,7 +43,7 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     counts = {s.name: s.resolution for s in instrument.sensors if s.kind == 'angle'}
     if candidate.effect == GAIN:
         far = abs(values['gain'] - 1.0) * _turned(problem, candidate.place)
-        return bool(far < COUNTED * counts.get(candidate.place, 0.0))
+        return far < COUNTED * counts.get(candidate.place, 0.0)
     if candidate.effect != ZERO:
         return False
     if abs(values['angle']) < COUNTED * counts.get(candidate.place, 0.0):
@@ -57,14 +58,18 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
 
 
 def _turned(problem: Problem, encoder: str) -> float:
-    """Return how far what an encoder reads turned [rad]; infinite if that drives the model."""
+    """Return how far what an encoder reads turned [rad]."""
+    [of] = [s.of for s in problem.rollouts.instrument.sensors if s.name == encoder]
+    driven = travel(problem, of)
+    if driven is not None:
+        return driven
     read = [
-        float(np.ptp(m.value[np.isfinite(m.value)]))
+        float(np.nanmax(m.value) - np.nanmin(m.value))
         for segment in problem.rollouts.segments
         for m in segment.measured
         if m.sensor.name == encoder and np.isfinite(m.value).any()
     ]
-    return max(read, default=np.inf)
+    return max(read, default=0.0)
 
 
 def _change(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> FloatArray:

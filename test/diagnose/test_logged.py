@@ -53,12 +53,14 @@ def test_a_scale_that_is_off_within_a_count_over_all_that_turns_is_no_fault(
         for m in segment.measured
         if m.sensor.name == 'encoder_2'
     ]
-    scale, values = Candidate('encoder_gain', 'encoder_2'), {'gain': 1.0 + counts * COUNT / turned}
+    scale = Candidate('encoder_gain', 'encoder_2')
+    values = {'gain': float(1.0 + counts * COUNT / turned)}
     assert is_logged(problem, scale, values) is loggers
     words = logged_words(problem.empty.joined(scale, values), [0])
     assert words.startswith(f'encoder_2 reads {values["gain"]:.5g} times its angle, over all')
-    # what drives the model is told by all that it moves
-    assert not is_logged(problem, Candidate('encoder_gain', 'encoder_M'), {'gain': 1.0 + 1e-5})
+    drives = Candidate('encoder_gain', 'encoder_M')
+    assert is_logged(problem, drives, {'gain': 1.0 + 1e-5})
+    assert not is_logged(problem, drives, {'gain': 1.01})
 
 
 @pytest.mark.parametrize(('counts', 'loggers'), [(0.5, True), (-0.5, True), (3.0, False)])
