@@ -104,3 +104,10 @@ def test_an_intake_has_even_stamps_and_says_so(body, run, times):
     [mended] = intake.recordings
     assert np.ptp(mended['actuator/pulley_body/position'].time - even) < 2e-5
     assert any('sampled evenly' in text for text in intake.left_out)
+
+
+def test_what_is_the_same_of_several_recordings_is_said_once(body, run, times):
+    even, late = times
+    several = [replace(stamped(run, late, even), name=name) for name in ('a', 'b', 'c')]
+    _, [said] = as_sampled(several, body)
+    assert said.startswith('a, b, c: stamps scatter by 0.06 ms about an even 2 ms')

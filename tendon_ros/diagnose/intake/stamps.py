@@ -41,10 +41,16 @@ def as_sampled(recordings: Sequence[Recording], instrument: Instrument) -> Sifte
 
     :param recordings: of one rig.
     :param instrument: its file.
-    :return: the recordings, and a sentence on each whose stamps scatter and whose motion does not.
+    :return: the recordings, and a sentence on those whose stamps scatter and whose motion does
+        not: one on all of which it is the same.
     """
     evened = [_evened(recording, instrument) for recording in recordings]
-    return tuple(r for r, _ in evened), [s for _, said in evened for s in said]
+    alike: dict[str, list[str]] = {}
+    for recording, sentences in evened:
+        for said in sentences:
+            alike.setdefault(said, []).append(recording.name)
+    words = [f'{", ".join(names)}: {said}' for said, names in alike.items()]
+    return tuple(r for r, _ in evened), words
 
 
 def _evened(recording: Recording, instrument: Instrument) -> tuple[Recording, list[str]]:
@@ -65,12 +71,12 @@ def _evened(recording: Recording, instrument: Instrument) -> tuple[Recording, li
             for c in recording.channels.values()
             if np.array_equal(c.time, time)
         ]
-        scatter, period = (
-            float(f'{x:.3g}') for x in (np.std(time - even), np.median(np.diff(even)))
-        )
+        # as finely as several recordings with one logger agree
+        scatter = float(f'{np.std(time - even):.1g}')
+        period = float(f'{np.median(np.diff(even)):.3g}')
         recording = recording.with_channels(same)
         said.append(
-            f'{recording.name}: stamps scatter by {written(scatter, "s")} about an even '
+            f'stamps scatter by {written(scatter, "s")} about an even '
             f'{written(period, "s")}, and the motion of '
             f'{", ".join(s.name for s in sensors)} does not: it is taken for sampled evenly'
         )
