@@ -195,8 +195,10 @@ def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
     :param candidate: an effect.
     :param values: of its parameters.
-    :return: whether.
+    :return: whether; what the file has of it is known to be.
     """
+    if candidate.given:
+        return False
     if candidate.effect == 'encoder_gain':
         return not 1.0 / MISCOUNTED < values['gain'] < MISCOUNTED
     return candidate.effect == 'inertia' and not 1.0 / MISTAKEN < values['scale'] < MISTAKEN

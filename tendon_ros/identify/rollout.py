@@ -182,7 +182,7 @@ class Rollouts:
         routing = self.instrument.routing()[: len(self.instrument.loops)]
         try:
             rows = self.states([()] * len(self.segments))
-        except SimulationError:
+        except (SimulationError, EffectError):
             return np.full(len(routing), np.inf)
         travels = [np.ptp(row.angle @ routing.T, axis=0) for row in rows]
         return np.asarray(np.max(travels, axis=0), dtype=np.float64)

@@ -58,6 +58,7 @@ def test_a_scale_that_is_off_within_a_count_over_all_that_turns_is_no_fault(
     assert is_logged(problem, scale, values) is loggers
     words = logged_words(problem.empty.joined(scale, values), [0])
     assert words.startswith(f'encoder_2 reads {values["gain"]:.5g} times its angle, over all')
+    assert not is_logged(problem, replace(scale, given=(('gain', 1.02),)), values)
     drives = Candidate('encoder_gain', 'encoder_M')
     assert is_logged(problem, drives, {'gain': 1.0 + 1e-5})
     assert not is_logged(problem, drives, {'gain': 1.01})
