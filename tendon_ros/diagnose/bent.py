@@ -195,13 +195,14 @@ def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
     :param candidate: an effect.
     :param values: of its parameters.
-    :return: whether; what the file has of it is known to be.
+    :return: whether, from what the file says.
     """
-    if candidate.given:
-        return False
+    known = candidate.as_given
     if candidate.effect == 'encoder_gain':
-        return not 1.0 / MISCOUNTED < values['gain'] < MISCOUNTED
-    return candidate.effect == 'inertia' and not 1.0 / MISTAKEN < values['scale'] < MISTAKEN
+        return not 1.0 / MISCOUNTED < values['gain'] / known['gain'] < MISCOUNTED
+    if candidate.effect == 'inertia':
+        return not 1.0 / MISTAKEN < values['scale'] / known['scale'] < MISTAKEN
+    return False
 
 
 def _is_at_bound(parameter: Parameter, value: float) -> bool:

@@ -22,7 +22,7 @@ FloatArray = NDArray[np.float64]
 POLLED = 0.5
 #: part of what an angle that is off does, as power, that is the same as what a count does
 ALIKE = 0.8
-ZERO, GAIN = 'encoder_offset', 'encoder_gain'
+DELAY, ZERO, GAIN = 'sensor_delay', 'encoder_offset', 'encoder_gain'
 
 
 def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -33,20 +33,21 @@ def is_logged(problem: Problem, candidate: Candidate, values: Mapping[str, float
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether it is a delay below half of the time between samples, an angle that is off by
-        a count or so, or a scale that is over all that it turns: a counter that leaves out the
-        rest reads half a count less. So does whatever a motor turns whose counter does.
+        a count or so, or a scale that is over all that it turns, all from what the file says: a
+        counter that leaves out the rest reads half a count less. So does whatever a motor turns
+        whose counter does.
     """
-    if candidate.effect == 'sensor_delay':
-        return values['time'] < POLLED * max(s.sampling for s in problem.rollouts.segments)
+    if candidate.effect not in (DELAY, ZERO, GAIN):
+        return False
+    known = candidate.as_given
+    [off] = [abs(values[p] - known[p]) for p in ('time', 'angle', 'gain') if p in known]
+    if candidate.effect == DELAY:
+        return off < POLLED * max(s.sampling for s in problem.rollouts.segments)
     instrument = problem.rollouts.instrument
     counts = {s.name: s.resolution for s in instrument.sensors if s.kind == 'angle'}
-    # one that the file has may be none, and that is a fault of the file
-    if candidate.effect == GAIN and not candidate.given:
-        far = abs(values['gain'] - 1.0) * _turned(problem, candidate.place)
-        return far < COUNTED * counts.get(candidate.place, 0.0)
-    if candidate.effect != ZERO:
-        return False
-    if abs(values['angle']) < COUNTED * counts.get(candidate.place, 0.0):
+    if candidate.effect == GAIN:
+        return off * _turned(problem, candidate.place) < COUNTED * counts[candidate.place]
+    if off < COUNTED * counts[candidate.place]:
         return True
     motors = [d.sensor.name for d in drives(instrument) if not d.by_torque]
     does = _change(problem, candidate, values)

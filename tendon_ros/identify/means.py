@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d as highest
-from scipy.ndimage import minimum_filter1d as lowest
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.model.instrument import Sensor
@@ -62,7 +61,7 @@ def binned(
     if apart.size > 2:
         one = value[known][first]
         # where what was flat falls all at once, its slope would lead beyond all that was read
-        low, high = (extreme(one, 3, mode='nearest')[back] for extreme in (lowest, highest))
+        low, high = minimum_filter1d(one, 3)[back], maximum_filter1d(one, 3)[back]
         moved = value[known] - np.gradient(one, apart)[back] * (mean - middles[known])
         value[known] = np.clip(moved, low, high)
     quantised = sensor.resolution / np.sqrt(12.0)

@@ -179,13 +179,22 @@ class Rollouts:
     @cached_property
     def stretches(self) -> FloatArray:
         """By how much each cable is let out and stretched by the file [m], shape (loops,)."""
-        routing = self.instrument.routing()[: len(self.instrument.loops)]
+        least, most = self.let_out([()] * len(self.segments))
+        return np.asarray(most - least)
+
+    def let_out(self, uses: Sequence[Sequence[EffectUse]]) -> FloatArray:
+        """
+        Return how far the cable of each loop is let out at least and at most.
+
+        :param uses: effects in force beside the instrument's own, for each segment.
+        :return: [m], shape (2, loops); infinite where the model cannot be computed.
+        """
+        radius = self.instrument.routing()[: len(self.instrument.loops)]
         try:
-            rows = self.states([()] * len(self.segments))
+            far = np.concatenate([rows.angle for rows in self.states(uses)]) @ radius.T
         except (SimulationError, EffectError):
-            return np.full(len(routing), np.inf)
-        travels = [np.ptp(row.angle @ routing.T, axis=0) for row in rows]
-        return np.asarray(np.max(travels, axis=0), dtype=np.float64)
+            return np.outer([-np.inf, np.inf], np.ones(len(radius)))
+        return np.stack([far.min(axis=0), far.max(axis=0)])
 
     def states(self, uses: Sequence[Sequence[EffectUse]]) -> list[Rows]:
         """

@@ -14,7 +14,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tendon_ros.base.errors import SimulationError
 from tendon_ros.identify.candidate import Candidate, starts
 from tendon_ros.identify.driving import drives
 from tendon_ros.identify.fit import Fit, Problem
@@ -199,14 +198,8 @@ class Starting:
     def _stretches(self) -> FloatArray:
         """How far the cables of each loop are let out at most [m], shape (loops,)."""
         problem = self._problem
-        instrument = problem.rollouts.instrument
-        radius = instrument.routing()[: len(instrument.loops)]
-        try:
-            states = problem.rollouts.states(problem.uses(self._fit.model))
-        except SimulationError:
-            return np.full(len(radius), np.inf)
-        found = [np.abs(rows.angle @ radius.T).max(axis=0) for rows in states]
-        return np.asarray(np.max(found, axis=0), dtype=np.float64)
+        let_out = problem.rollouts.let_out(problem.uses(self._fit.model))
+        return np.asarray(np.abs(let_out).max(axis=0))
 
 
 def between_recordings(problem: Problem, candidate: Candidate) -> bool:
