@@ -42,6 +42,7 @@ from tendon_ros.diagnose.judge import (
 )
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.naming import NAMED, Weighed
+from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.undoing import absorbed, undoing
 from tendon_ros.identify.explanation import Model
@@ -144,6 +145,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         rubs = rubbing(ready, found, weighed, others, left)
         together = [rubs] if rubs else []
     members = {k for company in together for k in company.members}
+    weighed = _happening(ready, found, weighed, members)
     alone = {k: w for k, w in enumerate(weighed) if w.chance >= NAMED and k not in members}
     named = alone | {company.members[0]: company.weighed for company in together}
     logged = {
@@ -198,6 +200,38 @@ def _without(ready: Prepared, found: Found, undone: Collection[int]) -> Fit:
         return found.final
     rest = ready.problem.fitted(found.final.model.without(*undone), rounds=6, accuracy=1e-2)
     return rest if math.isfinite(rest.cost) else found.start
+
+
+def _happening(
+    ready: Prepared,
+    found: Found,
+    weighed: tuple[Weighed, ...],
+    members: Collection[int],
+) -> tuple[Weighed, ...]:
+    """
+    Return the same where no event is believed that stands out only beside what is not.
+
+    A stop that is hit again and again is told by a torque limit, a lighter body and a push: the
+    two take what all other hits leave, and the push one that they fit worse.
+
+    ``members``: causes that make up for one another and are believed together.
+    """
+    doubted = {k for k, w in enumerate(weighed) if w.chance <= IDLE and k not in members}
+    events = [k for k, w in enumerate(weighed) if w.chance >= NAMED and w.signs.lone]
+    if not events or not doubted:
+        return weighed
+    problem = ready.problem
+    believed = _without(ready, found, doubted)
+    once = {
+        k
+        for k in events
+        if not stands_out_in_time(
+            problem, _without(ready, found, {k, *doubted}), believed, found.final.model.causes[k]
+        )
+    }
+    return tuple(
+        replace(w, chance=min(IDLE, w.chance)) if k in once else w for k, w in enumerate(weighed)
+    )
 
 
 def _stands_alone(final: Fit, rest: Fit, k: int) -> bool:

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from tendon_ros.diagnose import session
-from tendon_ros.diagnose.belief import _open, belief
+from tendon_ros.diagnose.belief import _happening, _open, belief
 from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
@@ -16,6 +16,7 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.screening import Screen
+from tendon_ros.model.instrument_file import load_instrument
 
 COULOMB = Candidate('coulomb_friction', 'pulley_3')
 TENSION = Candidate('tension_friction', 'pulley_3')
@@ -310,3 +311,21 @@ def test_what_is_missed_but_may_as_well_have_no_size_is_used_and_not_named(found
     assert judged.weighed[1].chance <= IDLE
     assert judged.accepted == (0,)
     assert judged.kept == (0, 1)
+
+
+def test_a_push_that_stands_out_only_beside_what_is_not_believed_is_none(measured_on):
+    body = load_instrument('single_body')
+    rubs = ('coulomb_friction', 'pulley_body', {'torque': 0.2})
+    push = ('disturbance', 'pulley_body', {'torque': 0.05, 'start': 4.0, 'duration': 0.6})
+    run = measured_on(body, rubs, push, settings=(('duration', '8 s'), ('amplitude', '40 deg')))
+    ready, found = ends_with(
+        prepared([run], body), *((Candidate(*cause[:2]), cause[2]) for cause in (rubs, push))
+    )
+    friction, pushed = belief(ready, found).weighed
+    assert pushed.signs.lone
+    assert pushed.chance > NAMED
+    doubted = replace(friction, chance=IDLE), pushed
+    assert [w.chance for w in _happening(ready, found, doubted, ())] == [IDLE, IDLE]
+    # one that is believed, alone or with others
+    assert _happening(ready, found, (friction, pushed), ()) == (friction, pushed)
+    assert _happening(ready, found, doubted, (0,)) == doubted
