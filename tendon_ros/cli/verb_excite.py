@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from tendon_ros.diagnose.result import Diagnosis
     from tendon_ros.identify.excitation import Pair, Suggestion
     from tendon_ros.identify.excitation_trial import Explanation
-    from tendon_ros.model.instrument import Instrument
+    from tendon_ros.model.instrument import EffectUse, Instrument
     from tendon_ros.model.trajectory import Trajectory
 
 HELP = 'find the motion that tells explanations apart, and write it as a trajectory'
@@ -127,13 +128,18 @@ def _measured(instrument: Instrument, text: str) -> list[str]:
 def _asked(
     instrument: Instrument, words: Sequence[str], path: Path | None
 ) -> tuple[Instrument, list[Pair]]:
-    """Return what is to be told apart, and the instrument with all other causes in force."""
+    """
+    Return what is to be told apart, and the instrument with all other causes in force.
+
+    A cause stands instead of what the file has of it. A repaired file has the causes already:
+    those that are to be told apart are taken out of it.
+    """
     from dataclasses import replace
     from itertools import combinations
 
     from tendon_ros.base.errors import EffectError
     from tendon_ros.diagnose.together import alone
-    from tendon_ros.model.instrument import EffectUse
+    from tendon_ros.model.effect_use import in_force
 
     diagnosis = None if path is None else _read(path)
     fitted = {
@@ -150,16 +156,32 @@ def _asked(
     if not sets:
         where = f'{path}: leaves nothing to tell apart' if path else 'nothing to tell apart'
         raise EffectError(f'{where}; name some with --separate EFFECT@PLACE EFFECT@PLACE')
+    asked = {name for names in sets for name in names}
+    kept = [
+        use
+        for use in instrument.effects
+        if (use.effect, use.place) not in asked
+        or not _is_fitted(use, fitted.get((use.effect, use.place), {}))
+    ]
+    instrument = replace(instrument, effects=tuple(kept))
     pairs: list[Pair] = []
     for names in sets:
-        explained = [_explanation(name, fitted) for name in names]
+        explained = [_explanation(instrument, name, fitted) for name in names]
         if len(explained) == 1:
             pairs.append((explained[0], None))
         # a set of a diagnosis is about its cause; what a user names is told apart in all pairs
         pairs += [(a, b) for a, b in combinations(explained, 2) if words or a is explained[0]]
-    asked = {name for names in sets for name in names}
-    others = [EffectUse(e, p, v) for (e, p), v in fitted.items() if (e, p) not in asked]
-    return replace(instrument, effects=(*instrument.effects, *others)), pairs
+    others = [_explanation(instrument, name, fitted) for name in fitted if name not in asked]
+    uses = [candidate.use(values) for candidate, values in others]
+    return replace(instrument, effects=in_force(instrument.effects, uses)), pairs
+
+
+def _is_fitted(use: EffectUse, values: Mapping[str, float]) -> bool:
+    """Return whether an effect of the file has the sizes of a diagnosis."""
+    return bool(values) and all(
+        name in use.parameters and isclose(use.parameters[name], value)
+        for name, value in values.items()
+    )
 
 
 def _named(instrument: Instrument, word: str) -> tuple[str, str]:
@@ -178,13 +200,18 @@ def _named(instrument: Instrument, word: str) -> tuple[str, str]:
 
 
 def _explanation(
-    name: tuple[str, str], fitted: dict[tuple[str, str], dict[str, float]]
+    instrument: Instrument,
+    name: tuple[str, str],
+    fitted: dict[tuple[str, str], dict[str, float]],
 ) -> Explanation:
-    """Return an effect with the size that was fitted, or else a typical one."""
+    """Return an effect with the size that was fitted, or else one that is not the file's."""
     from tendon_ros.effects import find
-    from tendon_ros.identify.candidate import Candidate
+    from tendon_ros.identify.candidate import everyone
 
-    return Candidate(*name), {**find(name[0]).typical, **fitted.get(name, {})}
+    channels = [s.channel for s in instrument.sensors]
+    [candidate] = [c for c in everyone(instrument, channels) if (c.effect, c.place) == name]
+    values = {p.name: p.typical for p in candidate.parameters}
+    return candidate, {**find(name[0]).typical, **values, **fitted.get(name, {})}
 
 
 def _read(path: Path) -> Diagnosis:

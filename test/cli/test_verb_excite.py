@@ -1,6 +1,7 @@
 """``tendon excite`` prints what would separate and writes a trajectory that can be used."""
 
 import argparse
+from dataclasses import replace
 
 import pytest
 
@@ -14,6 +15,7 @@ from tendon_ros.diagnose.result import (
     Shrink,
     Unexplained,
 )  # fmt: skip
+from tendon_ros.model.instrument import EffectUse
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate
 from tendon_ros.model.trajectory_choice import chosen_trajectory
@@ -91,6 +93,36 @@ def test_other_causes_of_a_diagnosis_hold(tmp_path):
     changed, [((one, values), other)] = verb_excite._asked(rig, ['pretension@cable_m1'], path)
     assert [e.effect for e in changed.effects] == ['coulomb_friction']
     assert (one.effect, values, other) == ('pretension', {'scale': 0.85}, None)
+
+
+def test_a_cause_stands_instead_of_what_the_file_has(tmp_path):
+    plain = load_instrument('bench_rig')
+    rubs, damped = ('coulomb_friction', 'pulley_3'), ('viscous_friction', 'pulley_1')
+    diagnosis = Diagnosis(
+        verdict='explained',
+        gap=(),
+        where=(),
+        causes=(
+            fitted(*rubs, 'torque', 'N m', 0.2),
+            fitted(*damped, 'damping', 'N m s/rad', 0.1),
+        ),
+        candidates=(),
+        unexplained=Unexplained(probability=0.1),
+    )
+    path = tmp_path / 'diagnosis.json'
+    path.write_text(diagnosis.model_dump_json(by_alias=True), encoding='utf-8')
+    file = replace(plain, effects=(EffectUse(*rubs, {'torque': 0.05}),))
+    repaired = replace(
+        plain, effects=(EffectUse(*rubs, {'torque': 0.2}), EffectUse(*damped, {'damping': 0.1}))
+    )
+    for rig in (file, repaired):
+        changed, [((one, values), _)] = verb_excite._asked(rig, ['@'.join(damped)], path)
+        assert changed.effects == (EffectUse(*rubs, {'torque': 0.2}),)
+        assert ((one.effect, one.place), values['damping']) == (damped, 0.1)
+    # of what the file has of itself, another size is meant
+    _, [((one, values), _)] = verb_excite._asked(file, ['@'.join(rubs)], None)
+    assert one.use(values).instead
+    assert values['torque'] != 0.05
 
 
 @pytest.mark.parametrize(
