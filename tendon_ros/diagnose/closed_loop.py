@@ -60,15 +60,14 @@ def closed_loop_gap(
         return ClosedLoop(left_out=(said,) if commanded else ())
     traces: list[Trace] = []
     floors: dict[str, list[FloatArray]] = {}
+    without: dict[str, list[str]] = {}  # recordings by the reason why there is no closed loop
+    names = [channel_name('setpoint', f'pulley_{p}', 'position') for p in before.driven]
     for recording, segment, patched in zip(recordings, segments, after, strict=True):
-        names = [channel_name('setpoint', f'pulley_{p}', 'position') for p in before.driven]
-        if segment.pushed or any(name not in recording for name in names):
-            continue  # what pushed back is no part of the model, nor is who commanded nothing
-        try:
-            first = _run(recording, segment, before, names)
-            second = _run(recording, segment, patched, names)
-        except TendonError:
-            continue  # a model that diverges in closed loop has no gap to show
+        runs = _both(recording, segment, (before, patched), names)
+        if isinstance(runs, str):
+            without.setdefault(runs, []).append(recording.name)
+            continue
+        first, second = runs
         for sensor in before.sensors:
             if sensor.channel not in recording or sensor.channel not in first:
                 continue
@@ -93,7 +92,38 @@ def closed_loop_gap(
             )
         for m in segment.measured:
             floors.setdefault(m.sensor.channel, []).append(m.noise**2)
-    return ClosedLoop(_gaps(traces, floors), tuple(traces))
+    said = [f'{", ".join(own)}: no closed loop: {why}' for why, own in without.items() if why]
+    return ClosedLoop(_gaps(traces, floors), tuple(traces), tuple(said))
+
+
+def _both(
+    recording: Recording,
+    segment: Segment,
+    instruments: tuple[Instrument, Instrument],
+    names: Sequence[str],
+) -> tuple[dict[str, FloatArray], dict[str, FloatArray]] | str:
+    """
+    Return every channel by the file and by the patched one, or why there is no closed loop.
+
+    Empty where nothing was commanded.
+    """
+    missing = [name for name in names if name not in recording]
+    if len(missing) == len(names):
+        return ''
+    if missing:
+        return f'no {listed(missing)} was recorded'
+    if segment.pushed:
+        return 'the measured load pushed the model, and what pushes back is no part of it'
+    runs = []
+    for instrument, called in zip(
+        instruments, ('the instrument file', 'the repaired file'), strict=True
+    ):
+        try:
+            runs.append(_run(recording, segment, instrument, names))
+        except TendonError as error:
+            return f'{called} does not follow the command with its controllers: {error}'
+    first, second = runs
+    return first, second
 
 
 def _run(
