@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 
 from tendon_ros.cli.arguments import files_read, takes_bags
 
@@ -92,11 +93,13 @@ def run(args: argparse.Namespace) -> None:
         wander=args.wander or None,
     )
     fresh()  # a mistake is told before any bag is read
-    squares, samples, unit = 0.0, 0, ''
+    squares, samples, compared, unit = 0.0, 0, 0, ''
     for bag, out in _places(args):
         recording = read_recording(bag, args.namespace, joint_names(instrument))
         with shown(f'estimating {recording.name}') as progress:
             estimated = estimate_recording(recording, fresh(), progress, args.rate)
+        for warning in estimated.warnings:
+            print(f'warning: {warning}', file=sys.stderr)
         if out.suffix == '.csv':
             export_csv(estimated, out, overwrite=args.overwrite)
         else:
@@ -108,14 +111,15 @@ def run(args: argparse.Namespace) -> None:
             continue
         squares += score.samples * score.rmse**2
         samples += score.samples
+        compared += 1
         unit = score.unit
         print(
             f'{out}: {score.quantity} RMSE {score.rmse:.4g} {score.unit}, bias {score.bias:+.4g}, '
             f'range {score.span:.4g}; {score.coverage:.0%} within two standard deviations',
             flush=True,
         )
-    if samples and len(args.bag) > 1:
-        print(f'all {len(args.bag)} bags: RMSE {np.sqrt(squares / samples):.4g} {unit}')
+    if compared > 1:
+        print(f'{compared} bags together: RMSE {np.sqrt(squares / samples):.4g} {unit}')
 
 
 def _places(args: argparse.Namespace) -> list[tuple[Path, Path]]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.bags.stamps import to_seconds, to_stamps
-from tendon_ros.base.errors import listed, RecordingError
+from tendon_ros.base.errors import listed, RecordingError, TendonError
 from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.estimate.observer import Measurement, Observer
 
@@ -70,27 +71,40 @@ def estimate_recording(
     """
     Return a recording with the estimates added.
 
+    A measurement that the observer refuses is left out, as live, and a warning of the recording
+    says how many were and why the first one was.
+
     :param recording: what was measured.
     :param observer: a fresh observer.
     :param progress: called now and then with the part that is done, 0 to 1.
     :param rate: as for :func:`measurements`.
     :return: the recording and the channels ``estimate/...``.
-    :raises RecordingError: where a needed channel is missing, or the observer refuses a sample.
+    :raises RecordingError: where a needed channel is missing, or the observer refuses everything.
     """
     stamps: list[int] = []
+    refused: list[str] = []
     columns: dict[str, list[float]] = {}
     span = max(recording.end - recording.start, 1e-9)
     for n, measurement in enumerate(measurements(recording, observer.needs, rate)):
         now = (measurement.stamp_ns - recording.epoch_ns) / 1e9
         try:
             estimate = observer.update(measurement)
-        except RecordingError as error:
-            raise RecordingError(f'{recording.name}: at {now:.6f} s: {error}') from error
+        except TendonError as error:
+            refused.append(f'at {now:.6f} s: {error}')
+            continue
         stamps.append(estimate.stamp_ns)
         for name, value in estimate.values.items():
             columns.setdefault(name, []).append(value)
         if progress is not None and n % 256 == 0:
             progress((now - recording.start) / span)
+    if not stamps:
+        raise RecordingError(f'{recording.name}: no measurement could be used; {refused[0]}')
+    if refused:
+        said = (
+            f'{recording.name}: {len(refused)} of {len(refused) + len(stamps)} measurements left '
+            f'out, the first {refused[0]}'
+        )
+        recording = replace(recording, warnings=(*recording.warnings, said))
     time = to_seconds(np.array(stamps, dtype=np.int64), recording.epoch_ns)
     channels = [Channel(name, time, np.array(values)) for name, values in columns.items()]
     return recording.with_channels(channels)

@@ -8,6 +8,7 @@ import pytest
 
 from tendon_ros.bags.reader import read_recording
 from tendon_ros.bags.writer import write_recording
+from tendon_ros.base.recording import Channel
 from tendon_ros.cli.main import build_parser, main
 from tendon_ros.estimate import METHODS
 from tendon_ros.model.instrument_file import load_instrument
@@ -129,3 +130,14 @@ def test_the_page_and_the_help_say_what_is_taken_without_a_method(capsys):
     assert f'{ours} (default)' in said
     assert f"{theirs} (the node's)" in said
     assert all(name in said for name in METHODS)
+
+
+def test_what_is_left_out_of_a_bag_is_told(recorded, tmp_path, capsys):
+    motor = recorded['actuator/pulley_M/position']
+    value = motor.value.copy()
+    value[20] = 100.0
+    wild = recorded.with_channels([Channel(motor.name, motor.time, value)])
+    bag = write_recording(wild, tmp_path / 'wild')
+    assert estimate(bag, '--out', tmp_path / 'x.csv') == 0
+    said = capsys.readouterr().err
+    assert f'warning: wild: 1 of {len(value)} measurements left out, the first at ' in said

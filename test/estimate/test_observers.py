@@ -214,14 +214,20 @@ def test_estimates_are_at_the_very_times_of_what_was_measured(bench, pressing):
     assert np.array_equal(estimated['estimate/force'].time, time)
 
 
-def test_a_sample_that_is_refused_offline_is_told_where_it_is(bench, pressing):
+def test_a_sample_that_is_refused_is_left_out_as_live_and_told(bench, pressing):
     motor = pressing['actuator/pulley_M/position']
     value = motor.value.copy()
     value[7] = 100.0
     wild = pressing.with_channels([Channel(motor.name, motor.time, value)])
-    words = rf'{wild.name}: at {motor.time[7]:.6f} s: actuator/pulley_M/position: 100 rad'
-    with pytest.raises(RecordingError, match=words):
-        estimate_recording(wild, build_observer(bench, 'dynamic'))
+    estimated = estimate_recording(wild, build_observer(bench, 'dynamic'))
+    kept = np.delete(motor.time, 7)
+    np.testing.assert_allclose(estimated['estimate/force'].time, kept, atol=1e-9)
+    words = f'1 of {len(value)} measurements left out, the first at {motor.time[7]:.6f} s: '
+    [warning] = estimated.warnings
+    assert warning.startswith(f'{wild.name}: {words}actuator/pulley_M/position: 100 rad')
+    gone = pressing.with_channels([Channel(motor.name, motor.time, 0.0 * value + 100.0)])
+    with pytest.raises(RecordingError, match=rf'{gone.name}: no measurement could be used; at '):
+        estimate_recording(gone, build_observer(bench, 'dynamic'))
 
 
 def test_channels_that_cannot_tell_the_force_are_refused(bench):
