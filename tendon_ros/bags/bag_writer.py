@@ -26,6 +26,7 @@ from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
 from tendon_ros import __version__
 from tendon_ros.bags.messages import definition_of
 from tendon_ros.bags.qos import offered_qos
+from tendon_ros.bags.storage import not_in_uri
 from tendon_ros.base.errors import listed, OutputError, RecordingError
 
 Storage = Literal['mcap', 'sqlite3']
@@ -50,6 +51,23 @@ CONVENTIONS: Mapping[str, str] = {
 _PLUGINS = {'mcap': StoragePlugin.MCAP, 'sqlite3': StoragePlugin.SQLITE3}
 #: how the storages say that the disk refuses
 _REFUSED = (OSError, sqlite3.OperationalError)
+
+
+def check_storage(path: Path, storage: str) -> None:
+    """
+    Check that a storage can be written to a path.
+
+    :param path: folder of the bag, or a single file.
+    :param storage: ``mcap`` or ``sqlite3``.
+    :raises RecordingError: where there is no such storage.
+    :raises OutputError: where SQLite cannot open such a path.
+    """
+    if storage not in _PLUGINS:
+        raise RecordingError(f'{path}: storage {storage!r} unknown; use {listed(_PLUGINS)}')
+    if storage == 'sqlite3' and (odd := not_in_uri(path)):
+        raise OutputError(
+            f'{path}: SQLite cannot open a path with {odd}; give another one, or write an MCAP'
+        )
 
 
 class BagWriter:
@@ -77,8 +95,7 @@ class BagWriter:
         metadata: Mapping[str, str] | None = None,
     ) -> None:
         self.path = Path(path)
-        if storage not in _PLUGINS:
-            raise RecordingError(f'{path}: storage {storage!r} unknown; use {listed(_PLUGINS)}')
+        check_storage(self.path, storage)
         self._flushed_ns: int | None = None
         self._connections: dict[str, Connection] = {}
         self._metadata = {**(metadata or {}), **CONVENTIONS}

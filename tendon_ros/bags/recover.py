@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from contextlib import closing, suppress
 from dataclasses import dataclass
+from glob import escape
 import json
 import os
 from pathlib import Path
@@ -136,7 +137,7 @@ def _copy_sqlite(path: Path, bag: BagWriter) -> bool | None:
     with tempfile.TemporaryDirectory() as folder:
         # Opened for writing, so that SQLite itself undoes the transaction that was cut off; on a
         # copy, so that the damaged bag stays as it is.
-        for file in path.parent.glob(f'{path.name}*'):
+        for file in path.parent.glob(f'{escape(path.name)}*'):
             try:
                 shutil.copy(file, folder)
             except OSError as error:

@@ -52,7 +52,9 @@ def open_bag(path: Path) -> Iterator[Reader]:
     :return: a context that gives the reader.
     :raises RecordingError: where the bag is unfinished, damaged or may not be read.
     """
-    storage_files(path)
+    files = storage_files(path)
+    if any(file.suffix == '.db3' for file in files) and (odd := not_in_uri(path)):
+        raise RecordingError(f'{path}: SQLite cannot open a path with {odd}; rename it')
     if path.is_dir() and not (path / 'metadata.yaml').is_file():
         raise RecordingError(
             f'{path}: no metadata.yaml, its writer was stopped before it finished; {_MEND}'
@@ -64,6 +66,16 @@ def open_bag(path: Path) -> Iterator[Reader]:
         yield reader
     finally:
         reader.close()
+
+
+def not_in_uri(path: Path) -> str:
+    """
+    Return what of a path SQLite would not take as it stands: rosbags gives it as a URI.
+
+    :param path: of an SQLite bag.
+    :return: the characters; empty for most paths.
+    """
+    return ' and '.join(character for character in '#?%' if character in str(path))
 
 
 def messages(
@@ -132,6 +144,6 @@ def _embedded(path: Path) -> str:
                 if record.name == 'rosbag2':
                     return str(record.metadata.get('serialized_metadata', ''))
         return ''
-    with closing(sqlite3.connect(f'file:{path}?immutable=1', uri=True)) as database:
+    with closing(sqlite3.connect(f'{path.absolute().as_uri()}?immutable=1', uri=True)) as database:
         rows = database.execute('SELECT metadata FROM metadata ORDER BY id DESC').fetchall()
     return str(rows[0][0]) if rows else ''

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 
 from tendon_ros.bags.all_or_nothing import all_or_nothing
-from tendon_ros.bags.bag_writer import BagWriter, Storage
+from tendon_ros.bags.bag_writer import BagWriter, check_storage, Storage
 from tendon_ros.bags.encoding import Batch, joint_states, wrenches
 from tendon_ros.bags.place import check_bag_output
 from tendon_ros.bags.stamps import END
@@ -54,6 +54,8 @@ def write_recording(
     path = Path(path)
     check_namespace(namespace)
     check_bag_output(path, overwrite=overwrite)
+    storage = FILE_STORAGE.get(path.suffix, storage)
+    check_storage(path, storage)
     single = path.suffix in FILE_STORAGE
     batches = _batches(recording)
     metadata = {
@@ -74,7 +76,7 @@ def write_recording(
             all_or_nothing(path),
             BagWriter(
                 part / path.stem if single else part / path.name,
-                storage=FILE_STORAGE.get(path.suffix, storage),
+                storage=storage,
                 compress=compress,
                 metadata=metadata,
             ) as bag,

@@ -67,6 +67,12 @@ def run(args: argparse.Namespace) -> None:
     if ending is not None and len(keys) > 1:
         raise OutputError(f'{out}: one file for {len(keys)} runs; give a folder, or --select one')
     check_namespace(args.namespace)
+    odd = [key for key in keys if key in ('', '..') or Path(key).name != key]
+    if odd and len(keys) > 1:
+        raise OutputError(
+            f'{args.file}: run {odd[0]!r} is no name of a bag in {out}; give the run another name '
+            'in the file, or --select it alone, with an --out of its own'
+        )
     for key in keys:
         place = out if len(keys) == 1 else out / key
         check_bag_output(place, [Path(args.file)], overwrite=args.overwrite)

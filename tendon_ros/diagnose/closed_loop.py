@@ -92,8 +92,8 @@ def closed_loop_gap(
             )
         for m in segment.measured:
             floors.setdefault(m.sensor.channel, []).append(m.noise**2)
-    said = [f'{", ".join(own)}: no closed loop: {why}' for why, own in without.items() if why]
-    return ClosedLoop(_gaps(traces, floors), tuple(traces), tuple(said))
+    left_out = [f'{", ".join(r)}: no closed loop: {why}' for why, r in without.items() if why]
+    return ClosedLoop(_gaps(traces, floors), tuple(traces), tuple(left_out))
 
 
 def _both(

@@ -354,3 +354,9 @@ def test_a_bag_without_messages_is_finished(tmp_path):
         bag.add_topic('/a', 'std_msgs/msg/String')
     with Reader(tmp_path / 'bag') as reader:
         assert reader.message_count == 0
+
+
+def test_a_database_may_have_brackets_in_its_name(recording, tmp_path):
+    path = write_recording(recording, tmp_path / 'run[1].db3')
+    recover(path, tmp_path / 'whole')
+    assert read_recording(tmp_path / 'whole').channels.keys() == recording.channels.keys()

@@ -213,3 +213,15 @@ def test_stamps_that_ros_has_no_room_for_are_refused(tmp_path):
         write_recording(last, tmp_path / 'bag')
     back = write_recording(replace(last, epoch_ns=last.epoch_ns - 1), tmp_path / 'bag')
     np.testing.assert_array_equal(read_recording(back)[late.name].time, late.time)
+
+
+@pytest.mark.parametrize('name', ['run#1.db3', 'run?1.db3', 'run%1.db3', 'folder#1/bag'])
+def test_where_sqlite_opens_nothing_is_told_and_left_clean(recording, tmp_path, name):
+    out = tmp_path / name
+    out.parent.mkdir(exist_ok=True)
+    with pytest.raises(OutputError, match=r'SQLite cannot open a path with [#?%]; give another'):
+        write_recording(recording, out, storage='sqlite3')
+    assert list(out.parent.iterdir()) == []
+    good = write_recording(recording, tmp_path / 'good.db3')
+    with pytest.raises(RecordingError, match=r'SQLite cannot open a path with [#?%]; rename it'):
+        read_recording(good.rename(out.with_suffix('.db3')))

@@ -213,3 +213,15 @@ def test_a_defect_is_not_hidden(monkeypatch):
     monkeypatch.setattr(cli, 'build_parser', broken)
     with pytest.raises(ZeroDivisionError):
         main(['info', 'x'])
+
+
+@pytest.mark.parametrize('key', ['../escaped', 'sub/b', '..', '/tmp/b'])
+def test_no_run_is_written_outside_of_the_folder(tmp_path, capsys, key):
+    file, mapping, out = tmp_path / 'x.npz', tmp_path / 'map.yaml', tmp_path / 'deep' / 'bags'
+    table = np.stack([np.arange(40) * 1e-3, np.arange(40.0)], axis=1)
+    np.savez(file, **{'a': table, key: table})
+    mapping.write_text(MAPPING.replace('[0-9]', '*'))
+    words = ['import', str(file), '--mapping', str(mapping), '--out', str(out)]
+    assert main(words) == 2
+    assert f'run {key!r} is no name of a bag in {out}' in capsys.readouterr().err
+    assert not out.parent.exists()
