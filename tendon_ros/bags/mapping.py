@@ -239,13 +239,11 @@ def _sentence(error: ValidationError) -> str:
     fault = error.errors()[0]
     place = '.'.join(str(part) for part in fault['loc']) or 'mapping'
     if fault['type'] == 'extra_forbidden':
-        model = Mapping
-        known = {
-            'runs': Runs.model_fields,
-            'time': Time.model_fields,
-            'channels': Source.model_fields,
-        }.get(str(fault['loc'][0]) if len(fault['loc']) > 1 else '', model.model_fields)
-        return f'{place}: unknown field; use {listed(known)}'
+        models = {'runs': Runs, 'time': Time, 'channels': Source}
+        above = [str(part) for part in fault['loc'][:-1]]
+        # a channel may have times of its own
+        model = next((models[part] for part in reversed(above) if part in models), Mapping)
+        return f'{place}: unknown field; use {listed(model.model_fields)}'
     if fault['type'] == 'missing':
         return f'{place}: missing; add it'
     message = fault['msg'].removeprefix('Value error, ')

@@ -71,7 +71,10 @@ def parsed(text: object, unit: str) -> float:
         one = _factor(own, unit)
     except ValueError as error:
         raise ValueError(f'{written_text!r} {error}; {mend}') from None
-    value = float(Decimal(number) * one)
+    try:
+        value = float(Decimal(number) * one)
+    except ArithmeticError:
+        value = math.inf
     if not math.isfinite(value):
         raise ValueError(f'{written_text!r} is too large; {mend}')
     return value
@@ -210,6 +213,7 @@ def _explained(unit: str) -> Iterator[None]:
     except (
         pint.PintError,
         ArithmeticError,
+        AssertionError,
         AttributeError,
         SyntaxError,
         tokenize.TokenError,

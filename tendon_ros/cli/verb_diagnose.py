@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+import sys
 
 from tendon_ros.cli.arguments import files_read, takes_bags
 
@@ -92,6 +93,12 @@ def run(args: argparse.Namespace) -> None:
             report=report,
             memory=memory,
             seconds=USUAL if args.minutes is None else 60.0 * args.minutes or math.inf,
+        )
+    if memory.refused:
+        print(
+            f'warning: {folder / "unfinished.json"}: {memory.refused}; interrupted, this '
+            'diagnosis would have begun anew',
+            file=sys.stderr,
         )
     text = outcome.diagnosis.model_dump_json(by_alias=True, indent=2)
     write(folder / 'diagnosis.json', text + '\n')

@@ -19,6 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         '--markdown', metavar='FILE', type=Path, help='write all data sheets as one Markdown page'
     )
+    parser.add_argument('--overwrite', action='store_true', help='replace a page that is there')
 
 
 def run(args: argparse.Namespace) -> None:
@@ -27,12 +28,14 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: the parsed arguments.
     :raises EffectError: where there is no effect of that id.
-    :raises PageError: where the page cannot be written.
+    :raises OutputError: where the page cannot be written.
     """
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.effects import catalogue
     from tendon_ros.report.effects_page import section, write_page
 
     if args.markdown is not None:
+        check_output(args.markdown, overwrite=args.overwrite)
         write_page(args.markdown)
         print(f'{args.markdown}: {len(catalogue())} effects')
     elif args.effect is not None:

@@ -28,11 +28,15 @@ def run(args: argparse.Namespace) -> None:
     Run the experiments, write the files, print the table.
 
     :param args: parsed arguments.
+    :raises OutputError: where nothing can be written there.
     :raises ReportError: where a file cannot be written.
     """
+    from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import shown
     from tendon_ros.report.paper_page import HEADER, reproduce, statement_table
 
+    # what an earlier run has left there is replaced
+    check_output(args.out / 'index.html', overwrite=True)
     with shown('the paper') as update:
 
         def progress(title: str, done: float) -> None:

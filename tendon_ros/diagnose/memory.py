@@ -33,6 +33,9 @@ class Memory:
     :param recordings: what is diagnosed.
     :param instrument: its file.
     :param withhold: effects to do without.
+
+    ``refused``: why nothing more could be written, empty where all was. A diagnosis goes on
+    without its memory.
     """
 
     def __init__(
@@ -43,6 +46,7 @@ class Memory:
         withhold: Sequence[str] = (),
     ) -> None:
         self._path = path
+        self.refused = ''
         digest = hashlib.sha256(f'{__version__} {sorted(withhold)}'.encode())
         digest.update(text_of(instrument).encode())
         for recording in recordings:
@@ -99,8 +103,11 @@ class Memory:
         }
         text = json.dumps(content)
         part = self._path.with_suffix('.part')
-        part.write_text(text, encoding='utf-8')
-        part.replace(self._path)
+        try:
+            part.write_text(text, encoding='utf-8')
+            part.replace(self._path)
+        except OSError as error:
+            self.refused = str(error.strerror)
 
     def forget(self) -> None:
         """Drop what was remembered: the diagnosis is done."""

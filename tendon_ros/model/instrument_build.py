@@ -46,6 +46,7 @@ def built(file: InstrumentSection) -> Instrument:
     :return: the instrument, order of everything as in the file.
     :raises InstrumentError: where sections do not fit together; the message begins with the field.
     """
+    curves = tuple(curve(name, section) for name, section in file.curves.items())
     check_references(file)
     period, continuous = _control(file.control)
     bare = Instrument(
@@ -60,7 +61,7 @@ def built(file: InstrumentSection) -> Instrument:
             Coupling(n, dict(c.route), c.stiffness.value, c.damping.value)
             for n, c in file.couplings.items()
         ),
-        curves=tuple(curve(name, section) for name, section in file.curves.items()),
+        curves=curves,
         contacts=tuple(_contact(name, section) for name, section in file.contacts.items()),
         sensors=tuple(_sensors(file)),
         control_period=period,

@@ -18,7 +18,7 @@ def check_references(file: InstrumentSection) -> None:
     """
     Check that all names in a file refer to something that fits.
 
-    :param file: the file's sections, each sound in itself.
+    :param file: the file's sections, each sound in itself, as are its curves.
     :raises InstrumentError: on the first that does not; the message lists what exists.
     """
     for kind, empty in (('pulleys', not file.pulleys), ('motors', not file.motors)):
@@ -40,7 +40,7 @@ def check_references(file: InstrumentSection) -> None:
         _known(f'loops.{name}.curve', loop.curve, 'curve', file.curves)
         for pulley in loop.torque_sign:
             _known(f'loops.{name}.torque_sign', pulley, 'pulley of the route', loop.route)
-        low, *_, high = file.curves[loop.curve].tension or (0.0, 0.0)
+        low, *_, high = file.curves[loop.curve].tension
         pretension = loop.pretension.value
         if not low <= pretension <= high:
             raise InstrumentError(

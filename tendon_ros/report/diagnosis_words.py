@@ -80,7 +80,8 @@ def number(value: float, digits: int = 2) -> str:
         return '–' if math.isnan(value) else ('−∞' if value < 0 else '∞')
     if value == 0.0:
         return '0'
-    return _fixed(value, digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = float(f'{value:.{digits - 1}e}')  # 9.96 has one digit more than it seems
+    return _fixed(value, digits - 1 - math.floor(math.log10(abs(rounded))))
 
 
 def percent(part: float) -> str:

@@ -21,8 +21,8 @@ What a real instrument does and its file does not say: each effect acts at a pla
 instrument and has a few parameters, in SI units. At their neutral values they change nothing; a
 parameter without one (–) only gives shape to what the others bring.
 
-Written by `tendon effects --markdown docs/effects.md` from the files in `tendon_ros/effects`. To
-add an effect, add a file there and write this page again.
+Written by `tendon effects --markdown docs/effects.md --overwrite` from the files in
+`tendon_ros/effects`. To add an effect, add a file there and write this page again.
 """
 
 

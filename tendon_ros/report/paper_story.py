@@ -213,8 +213,7 @@ def _steps(found: Instrument, causes: Sequence[Cause]) -> list[tuple[str, Instru
             continue
         left = [u for u in left if u not in new]
         joined_ones += new
-        for place in {u.place for u in new} & bristles.keys():
-            joined_ones.append(bristles.pop(place))
+        joined_ones += [bristles.pop(u.place) for u in new if u.place in bristles]
         steps.append((label, replace(found, effects=tuple(joined_ones))))
     return steps
 

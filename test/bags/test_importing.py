@@ -319,6 +319,7 @@ def with_effort(**fields):
         (with_position(column=-1), 'column'),
         (with_position(column=None), 'column'),
         (with_position(factor=3), 'factor: unknown field; use bits, column, offset'),
+        (with_position(time={'colum': 1}), 'time.colum: unknown field; use column, rate, unit'),
         (changed(runs={'header': 'hdr'}), 'must hold {key}'),
         (changed(format='csv'), 'a CSV file is one run'),
         (changed(epoch='yesterday'), 'epoch'),

@@ -44,6 +44,8 @@ def test_reads_units(text, unit, value):
         ('nan m', 'm', 'not finite'),
         ('-inf', 'm', 'not finite'),
         ('1e400 m', 'm', 'too large'),
+        ('1e9999999 m', 'm', 'too large'),
+        ('30 a("b")', 'm', 'unit that does not exist'),
         ('5 %', 'rad', "not in rad (it names no angle); write a quantity such as '17 deg'"),
         ('5 rad/s', 'Hz', 'not in Hz (its angle has no place there)'),
         ('5 N m/deg', 'N m', 'its angle has no place there'),

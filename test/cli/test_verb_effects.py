@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from tendon_ros.base.errors import EffectError
+from tendon_ros.base.errors import EffectError, OutputError
 from tendon_ros.cli import verb_effects
 from tendon_ros.effects import catalogue
 from tendon_ros.report.effects_page import page
@@ -40,6 +40,16 @@ def test_markdown(tmp_path, capsys):
     run('--markdown', str(tmp_path / 'effects.md'))
     assert (tmp_path / 'effects.md').read_text(encoding='utf-8') == page()
     assert f'{len(catalogue())} effects' in capsys.readouterr().out
+
+
+def test_markdown_replaces_only_what_it_may(tmp_path):
+    path = tmp_path / 'effects.md'
+    path.write_text('mine')
+    with pytest.raises(OutputError, match='exists'):
+        run('--markdown', str(path))
+    assert path.read_text() == 'mine'
+    run('--markdown', str(path), '--overwrite')
+    assert path.read_text(encoding='utf-8') == page()
 
 
 def test_one_and_page_exclude_each_other(capsys):

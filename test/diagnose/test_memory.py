@@ -96,6 +96,14 @@ def test_a_spoilt_file_is_no_obstacle(tmp_path, body, run, text):
     assert Memory(path, [run], body).models() == []
 
 
+def test_a_disk_that_refuses_ends_no_diagnosis(tmp_path, body, run):
+    memory = Memory(tmp_path / 'gone' / 'unfinished.json', [run], body)
+    assert memory.refused == ''
+    memory.keep([Model((), (), {}, np.zeros(0))])
+    assert 'No such file' in memory.refused
+    assert len(memory.models()) == 1
+
+
 def test_what_channels_weigh_by_is_remembered(tmp_path, body, run):
     path = tmp_path / 'unfinished.json'
     memory = Memory(path, [run], body)

@@ -201,6 +201,11 @@ FAULTS = [
     ('pretension: 5 N', 'pretension: 5 N, torque_sign: {02: -1}', 'loops.m1.torque_sign'),
     ('pretension: 5 N', 'pretension: 5 N, torque_sign: {1: 2}', 'loops.m1.torque_sign.1'),
     ('{mm: [0, 1, 2]}', '{mm: [0, 1]}', 'curves.steel: 2 elongations for 3 tensions'),
+    (
+        '{mm: [0, 1, 2]}\n    tension: {N: [0, 10, 100]}',
+        '{mm: [0]}\n    tension: {N: [5]}',
+        'curves.steel: 1 elongations for 1 tensions; give at least two pairs',
+    ),
     ('{mm: [0, 1, 2]}', '{mm: [0, 2, 1]}', 'curves.steel.elongation: point 2'),
     ('{mm: [0, 1, 2]}', '[0, 1, 2]', 'curves.steel.elongation: is not one unit with a list'),
     ('{mm: [0, 1, 2]}', '{mm: 3}', 'curves.steel.elongation: mm holds no list'),

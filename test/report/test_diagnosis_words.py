@@ -79,6 +79,7 @@ def test_channels(channel, words):
 def test_numbers_have_the_digits_that_count():
     assert [number(x) for x in (6.31, 0.0456, 127.3, 0.0)] == ['6.3', '0.046', '127', '0']
     assert number(-0.0456) == '−0.046'
+    assert [number(x) for x in (9.94, 9.96, 0.0996, -99.6)] == ['9.9', '10', '0.10', '−100']
     assert [number(x) for x in (np.inf, -np.inf, np.nan)] == ['∞', '−∞', '–']
 
 

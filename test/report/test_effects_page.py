@@ -13,7 +13,7 @@ DOCS = Path(__file__).parent.parent.parent / 'docs'
 
 def test_page_is_current():
     stored = (DOCS / 'effects.md').read_text(encoding='utf-8')
-    assert stored == page(), 'run: tendon effects --markdown docs/effects.md'
+    assert stored == page(), 'run: tendon effects --markdown docs/effects.md --overwrite'
 
 
 def test_page_has_every_effect():

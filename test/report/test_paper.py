@@ -119,7 +119,8 @@ def test_command_prints_the_table_and_the_reasons(tmp_path, capsys, monkeypatch)
     assert (tmp_path / 'new' / 'folder' / 'index.html').is_file()
 
 
-def test_command_without_a_place_to_write_is_a_mistake(tmp_path, capsys):
+def test_command_without_a_place_to_write_runs_nothing(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(paper_page, 'PARTS', (pytest.fail,))
     (tmp_path / 'file').write_text('')
     assert main(['reproduce', '--out', str(tmp_path / 'file')]) == 2
-    assert 'fig07.png: cannot be written' in capsys.readouterr().err
+    assert 'file, not a folder' in capsys.readouterr().err

@@ -38,10 +38,10 @@ def plausible(recordings: Sequence[Recording], instrument: Instrument) -> Sifted
     :param instrument: the network.
     :return: the rest, and sentences.
     """
-    runs = [expectations(recording, instrument) for recording in recordings]
     if len(encoder_channels(instrument)) < len(instrument.motors):
         # what is driven by torque drifts: no shape can be held against it
         return tuple(recordings), []
+    runs = [expectations(recording, instrument) for recording in recordings]
     faults = [misdriven(r, instrument, own) for r, own in zip(recordings, runs, strict=True)]
     common = next((fault for fault in faults if fault), '')
     heard: list[_Judged] = []
