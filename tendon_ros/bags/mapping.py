@@ -239,7 +239,7 @@ def _sentence(error: ValidationError) -> str:
     fault = error.errors()[0]
     place = '.'.join(str(part) for part in fault['loc']) or 'mapping'
     if fault['type'] == 'extra_forbidden':
-        models = {'runs': Runs, 'time': Time, 'channels': Source}
+        models: dict[str, type[_Strict]] = {'runs': Runs, 'time': Time, 'channels': Source}
         above = [str(part) for part in fault['loc'][:-1]]
         # a channel may have times of its own
         model = next((models[part] for part in reversed(above) if part in models), Mapping)
