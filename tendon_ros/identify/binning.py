@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from tendon_ros.base.recording import Recording
+from tendon_ros.base.recording import Channel, Recording
 from tendon_ros.identify.driving import Drive, drives
 from tendon_ros.identify.motion import motion_of, reading_error
 from tendon_ros.identify.segment import FITTED, SETTLING
@@ -33,6 +33,8 @@ JUMPS = 0.004  # [s] within which a torque jumps where nothing else drives the m
 FEW = 10  # bins of a recording that say nothing of their length
 #: part of an acceleration's power that may be there where counts seem to make up all of it
 SOME = 0.25
+#: times what a torque does within bins that the inertia may make of what they do not see
+SHAKEN = 2.0
 #: [s] that bins are lengthened to at most, and times as long as before with each step
 LONGEST, LONGER = 0.1, 1.25
 
@@ -82,8 +84,9 @@ class Driven:
     What a drive did, as finely as its encoder tells.
 
     ``angle``: by time from the first reading [rad]; ``error`` [rad] of a reading at rest, and
-    ``apart`` [rad] of each where it moves, shape (n,); ``inertia`` [kg m^2] by ``torque`` [N m],
-    root mean square of what the motor reported.
+    ``apart`` [rad] of each where it moves, shape (n,); ``inertia`` [kg m^2]; ``torque``: what the
+    motor reported; ``alone``: whether nothing but the motor, and what acts on the pulley itself,
+    moves it.
     """
 
     time: FloatArray
@@ -91,7 +94,8 @@ class Driven:
     error: float
     apart: FloatArray
     inertia: float
-    torque: float
+    torque: Channel
+    alone: bool
 
     @classmethod
     def of(cls, recording: Recording, instrument: Instrument, drive: Drive) -> Driven | None:
@@ -122,8 +126,14 @@ class Driven:
             reading.still,
             reading.apart(fine, channel.sampling),
             float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)]),
-            float(np.sqrt(np.mean(recording[torques[0]].value ** 2))),
+            recording[torques[0]],
+            not any(drive.pulley in r.route for r in (*instrument.loops, *instrument.couplings)),
         )
+
+    @cached_property
+    def usual(self) -> float:
+        """Root mean square of the torque [N m]."""
+        return max(float(np.sqrt(np.mean(self.torque.value**2))), 1e-12)
 
     def missed(self, period: float) -> float:
         """
@@ -147,13 +157,24 @@ class Driven:
         Return the part of the torque that the inertia makes of what bins do not see.
 
         :param period: length of a bin [s].
-        :return: root mean square by root mean square, what counts make up taken off.
+        :return: root mean square by root mean square, what counts make up taken off. Where only
+            the motor moves the pulley, no more than twice what its torque does: a gear that gives
+            way lets an encoder shake without what turns behind it.
         """
         if self._too_short(period):
             return 0.0
         _, off = self._seen(period, self.angle)
         _, made_up = self._seen(period, self._counted)
-        return self.inertia * math.sqrt(max(0.0, off - made_up)) / max(self.torque, 1e-12)
+        found = self.inertia * math.sqrt(max(0.0, off - made_up)) / self.usual
+        return min(found, SHAKEN * self._torque_unseen(period)) if self.alone else found
+
+    def _torque_unseen(self, period: float) -> float:
+        """Return the part of the torque that bins do not see, root mean square by the same."""
+        time, value = self.torque.time, self.torque.value
+        number = ((time - time[0]) / period).astype(np.int64)
+        count = np.bincount(number)
+        means = np.bincount(number, weights=value) / np.maximum(count, 1)
+        return float(np.sqrt(np.mean((value - means[number]) ** 2))) / self.usual
 
     def blurred(self, period: float) -> float:
         """
@@ -171,7 +192,7 @@ class Driven:
         # how much is made up is known roughly: where it seems all, some may still be there
         true = math.sqrt(max(power - made_up, SOME * power))
         less = true * min(1.0, made_up / max(power, 1e-300))
-        return self.inertia * less / max(self.torque, 1e-12)
+        return self.inertia * less / self.usual
 
     def _too_short(self, period: float) -> bool:
         """Return whether there are too few bins to say anything of their length."""

@@ -266,7 +266,10 @@ class Problem(Slopes):
         """
         slope = fit.slope if free is None else fit.slope * free
         normal = slope.T @ slope + np.diag(self.prior(fit.model) + 1e-9)
-        return np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+        # one along which the model runs away must not make nothing of all others
+        scale = 1.0 / np.sqrt(np.diag(normal))
+        scaled = np.linalg.pinv(normal * np.outer(scale, scale), hermitian=True)
+        return np.asarray(scaled * np.outer(scale, scale), dtype=np.float64)
 
 
 def _moves(cause: Candidate, at: int) -> list[list[tuple[int, float]]]:

@@ -4,8 +4,9 @@ Smooth motion from encoder counts, as smooth as the counts allow and no smoother
 A stiff cable turns one count into a torque far above a torque sensor's noise, so measured motion
 cannot drive a model as it is. Between samples the truth is only known to half a count; of all
 motions that stay so near, the one with the least jerk is taken (Whittaker's smoother of order
-three, with the smoothing chosen by the discrepancy principle: once for all that moves, more of it
-where a motor rests, less where it starts). A motor that rests between two counts reads now one,
+three). How much it smooths all that moves is chosen by generalised cross-validation, from what the
+discrepancy principle asks for at least; it is more where a motor rests, less where it starts. A
+motor that rests between two counts reads now one,
 now the other, and there every angle within half a count is as good: what flickers does not move.
 """
 
@@ -32,7 +33,8 @@ _SETTLES = 15  # solutions until what rests has found its place within the count
 #: is off by four
 _FARTHEST, _RAREST = 2.6, 4.0
 _TOGETHER = (4, 16)  # readings whose mean tells what one does not
-_USUAL = 0.9  # deviations that the smoother leaves
+_USUAL = 0.9  # deviations that the smoother leaves at least
+_WAVES = 1001  # frequencies of which a mean trace is the mean
 RESTING = 0.04  # [s] within which what moves has moved by a count
 SHAKES = 10.0  # counts from one turn to the next, no later than that, of what does not rest
 
@@ -135,20 +137,40 @@ def _too_far(left: FloatArray, error: float, apart: FloatArray) -> BoolArray:
 
 
 def _of_motion(value: FloatArray, weight: FloatArray, moving: BoolArray, error: FloatArray) -> int:
-    """Return the largest exponent with which what moves stays as near as the sensor's error."""
-    low, high, best = _WEAKEST, _STRONGEST, _WEAKEST
-    while low <= high and moving.any():
-        middle = (low + high) // 2
-        penalty = _penalty(np.full(len(value), middle))
+    """
+    Return the exponent with which readings of what moves are foretold best by the others.
+
+    No less than the largest with which it stays as near as the sensor's error: counts of what
+    moves slowly are alike from reading to reading, and cross-validation takes them for motion.
+    """
+
+    def off(exponent: int) -> float:
+        """Return the mean square of what moves by that of the sensor's error."""
+        penalty = _penalty(np.full(len(value), exponent))
         left = (_Least(weight, penalty).near(value, value) - value)[moving]
         # what starts suddenly is dealt with where it does
-        near = np.minimum(np.abs(left) / error[moving], _FARTHEST)
-        if np.sqrt(np.mean(near**2)) <= _USUAL:
+        return float(np.mean(np.minimum(np.abs(left) / error[moving], _FARTHEST) ** 2))
+
+    low, high, best = _WEAKEST, _STRONGEST, _WEAKEST
+    if not moving.any():
+        return best
+    while low <= high:
+        middle = (low + high) // 2
+        if off(middle) <= _USUAL**2:
             best = middle
             low = middle + 1
         else:
             high = middle - 1
-    return best
+    usual = float(np.mean(weight[moving]))
+    foretold = {n: off(n) / (1.0 - _follows(n, usual)) ** 2 for n in range(best, _STRONGEST + 1)}
+    return min(foretold, key=lambda n: foretold[n])
+
+
+def _follows(exponent: int, weight: float) -> float:
+    """Return by how much a smooth motion follows one of its readings: mean trace of the hat."""
+    waves = np.linspace(0.0, np.pi, _WAVES)
+    penalty = 10.0 ** (0.5 * exponent - 2.0) / max(weight, 1e-12)
+    return float(np.mean(1.0 / (1.0 + penalty * (2.0 - 2.0 * np.cos(waves)) ** 3)))
 
 
 def _resting(

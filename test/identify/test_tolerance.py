@@ -8,6 +8,7 @@ import pytest
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.tolerance import REACH, tolerances
 from tendon_ros.model.instrument import EffectUse
+from tendon_ros.model.instrument_file import load_instrument
 
 
 def by_name(instrument):
@@ -111,3 +112,20 @@ def test_an_effect_of_which_only_some_parameters_are_given_leaves_the_others_as_
     damping = found['cable_m1.damping']
     assert damping.given
     assert damping.axis.value(0.0) == 0.0
+
+
+def test_an_angle_that_is_guessed_to_be_zero_may_turn():
+    body = load_instrument('single_body')
+    use = EffectUse(
+        'torque_ripple', 'motor_body', {'amplitude': 0.0, 'cycles': 12.0, 'phase': 0.0}
+    )
+    name = 'motor_body.torque_ripple'
+    rig = replace(
+        body,
+        effects=(use,),
+        tolerances={f'{name}.phase': math.inf, f'{name}.amplitude': 0.1},
+    )
+    own = {t.parameter: t.axis for t in tolerances(rig) if t.effect == 'torque_ripple'}
+    assert own['phase'].ends[1] > 1.0
+    # a tenth of nothing is nothing
+    assert set(own) == {'phase'}
