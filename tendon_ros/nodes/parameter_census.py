@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rcl_interfaces.msg import ParameterType
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
@@ -44,10 +45,19 @@ class ParameterCensus:
 
         def on_names(answer: Any) -> None:
             names = list(answer.result().result.names)
-            client.get_parameters(names, lambda values: on_values(names, values))
+            client.get_parameter_types(names, lambda types: on_types(names, types))
+
+        def on_types(names: list[str], answer: Any) -> None:
+            # asked for one that is declared and not set, a node answers with no value of any
+            kinds = zip(names, answer.result().types, strict=False)
+            known = [name for name, kind in kinds if kind != ParameterType.PARAMETER_NOT_SET]
+            client.get_parameters(known, lambda values: on_values(known, values))
 
         def on_values(names: list[str], answer: Any) -> None:
-            values = map(parameter_value_to_python, answer.result().values)
-            self._hear(full, dict(zip(names, values, strict=True)))
+            values = list(map(parameter_value_to_python, answer.result().values))
+            if len(values) == len(names):
+                self._hear(full, dict(zip(names, values, strict=True)))
+            else:  # one was taken back between two questions
+                self._waiting[full] = client
 
         client.list_parameters(callback=on_names)
