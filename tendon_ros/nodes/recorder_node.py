@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from importlib import import_module
 import json
 import platform
@@ -17,7 +18,7 @@ from tendon_ros import __version__
 from tendon_ros.bags.bag_writer import BagWriter
 from tendon_ros.bags.qos import offered_qos
 from tendon_ros.bags.topics import TOPIC_TYPES
-from tendon_ros.base.errors import OutputError, RecordingError
+from tendon_ros.base.errors import listed, OutputError, RecordingError
 from tendon_ros.base.names import names_in
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.drops import Drops
@@ -25,6 +26,7 @@ from tendon_ros.nodes.parameter_census import ParameterCensus
 from tendon_ros.nodes.recorder import PROGRAM
 from tendon_ros.nodes.settings import SettingError, Value
 from tendon_ros.nodes.tendon_node import TendonNode
+from tendon_ros.nodes.terms import Terms, terms_for
 
 #: topics of the instrument beside those that carry channels; the last two are commands
 ALSO: Mapping[str, str] = {
@@ -39,6 +41,15 @@ SYSTEM: Mapping[str, str] = {
 }
 #: a burst that the writer may be late for, in messages
 DEPTH = 1000
+
+
+@dataclass(frozen=True)
+class Ear:
+    """A subscription, with the type of its topic and the terms on which it listens."""
+
+    kind: str
+    terms: Terms
+    subscription: Subscription
 
 
 class RecorderNode(TendonNode):
@@ -56,12 +67,12 @@ class RecorderNode(TendonNode):
         self._drops = Drops()
         self._began: float | None = None
         self._found: dict[str, Mapping[str, object]] = {}
-        self._subscriptions_by_topic: dict[str, Subscription] = {}
+        self._ears: dict[str, Ear] = {}
         self._refused: set[str] = set()
         own = {self.resolve_topic_name(t): kind for t, kind in {**TOPIC_TYPES, **ALSO}.items()}
         self._own = frozenset(own)
-        asked = names_in(str(values['topics']))
-        self._extra = {self._full_name(topic) for topic in asked} - own.keys()
+        self._asked = {self._full_name(topic) for topic in names_in(str(values['topics']))}
+        self._extra = self._asked - own.keys()
         # last of what may fail: a corrected command shall find the path free
         path = str(values['out']) or time.strftime('rosbag2_%Y_%m_%d-%H_%M_%S')
         self._bag = BagWriter(
@@ -75,7 +86,7 @@ class RecorderNode(TendonNode):
             },
         )
         for topic, kind in {**own, **SYSTEM}.items():
-            self._subscribe(topic, kind)
+            self._subscribe(topic, kind, Terms())
         self._census = ParameterCensus(self, self._on_parameters)
         self.every(0.5, self._look_around)
         self.every(0.05, self._check_time)
@@ -92,6 +103,12 @@ class RecorderNode(TendonNode):
             self._bag.close()
         if self.failure is not None:
             return
+        silent = sorted(self._asked - self._bag.counts.keys() - self._refused)
+        if silent:
+            self.get_logger().warning(
+                f'nothing came on {listed(silent)}; see whether the name is right and somebody '
+                'publishes'
+            )
         lost = sum(self._drops.lost.values())
         self.get_logger().info(
             f'{self._bag.path}: {sum(self._bag.counts.values())} messages on '
@@ -115,7 +132,7 @@ class RecorderNode(TendonNode):
                 'letters, digits and underscores, no digit first, such as /arm/joint_states'
             ) from None
 
-    def _subscribe(self, topic: str, kind: str, *, reliable: bool = True) -> None:
+    def _subscribe(self, topic: str, kind: str, now: Terms) -> None:
         """Record a topic from now on; its place in the bag is made by its first message."""
         package, _, name = kind.partition('/msg/')
         try:
@@ -124,13 +141,11 @@ class RecorderNode(TendonNode):
             if topic in self._extra:
                 self._refuse(topic, f'{kind} is not installed')
             return
-        qos = QoSProfile(
-            depth=DEPTH,
-            reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        terms = self._terms(topic, now)
+        subscription = self.create_subscription(
+            message, topic, self._writer_of(topic, kind), _qos(terms), raw=True
         )
-        self._subscriptions_by_topic[topic] = self.create_subscription(
-            message, topic, self._writer_of(topic, kind), qos, raw=True
-        )
+        self._ears[topic] = Ear(kind, terms, subscription)
 
     def _writer_of(self, topic: str, kind: str) -> Callable[..., None]:
         """Return the callback of a topic."""
@@ -157,29 +172,40 @@ class RecorderNode(TendonNode):
         self._refused.add(topic)
         self.get_logger().warning(f'{topic} is not recorded: {why}')
 
+    def _offers(self, topic: str) -> list[Terms]:
+        """Return what each of the topic's publishers offers."""
+        profiles = [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
+        return [
+            Terms(
+                reliable=one.reliability == ReliabilityPolicy.RELIABLE,
+                latched=one.durability == DurabilityPolicy.TRANSIENT_LOCAL,
+            )
+            for one in profiles
+        ]
+
+    def _terms(self, topic: str, now: Terms) -> Terms:
+        """Return how to listen to a topic by what is known of its publishers."""
+        return terms_for(self._offers(topic), now, heard=topic in self._bag.counts)
+
     def _offered(self, topic: str) -> Any:
         """Return what the topic's publishers offer, for playback to offer the same."""
-        profiles = [info.qos_profile for info in self.get_publishers_info_by_topic(topic)]
+        offers = self._offers(topic)
         return offered_qos(
-            reliable=all(p.reliability == ReliabilityPolicy.RELIABLE for p in profiles),
-            latched=any(p.durability == DurabilityPolicy.TRANSIENT_LOCAL for p in profiles),
+            reliable=all(one.reliable for one in offers),
+            latched=any(one.latched for one in offers),
         )
 
     def _look_around(self) -> None:
         """Ask new nodes for their parameters, and follow topics that have appeared."""
         self._census.look()
-        if self._extra - self._subscriptions_by_topic.keys() - self._refused:
+        if self._extra - self._ears.keys() - self._refused:
             for topic, kinds in self.get_topic_names_and_types():
-                if topic in self._extra - self._subscriptions_by_topic.keys() - self._refused:
-                    self._subscribe(topic, kinds[0])
-        for topic, subscription in list(self._subscriptions_by_topic.items()):
-            reliable = subscription.qos_profile.reliability == ReliabilityPolicy.RELIABLE
-            for info in self.get_publishers_info_by_topic(topic) if reliable else ():
-                if info.qos_profile.reliability == ReliabilityPolicy.BEST_EFFORT:
-                    # A reliable subscription hears nothing from such a publisher.
-                    self.destroy_subscription(subscription)
-                    self._subscribe(topic, info.topic_type, reliable=False)
-                    break
+                if topic in self._extra - self._ears.keys() - self._refused:
+                    self._subscribe(topic, kinds[0], Terms())
+        for topic, ear in list(self._ears.items()):
+            if self._terms(topic, ear.terms) != ear.terms:
+                self.destroy_subscription(ear.subscription)
+                self._subscribe(topic, ear.kind, ear.terms)
 
     def _check_time(self) -> None:
         if self._duration and self._began and time.monotonic() - self._began >= self._duration:
@@ -196,6 +222,15 @@ class RecorderNode(TendonNode):
     def _give_up(self, error: OutputError) -> None:
         self.failure = error
         self.stopping.set()
+
+
+def _qos(terms: Terms) -> QoSProfile:
+    reliability, durability = ReliabilityPolicy, DurabilityPolicy
+    return QoSProfile(
+        depth=DEPTH,
+        reliability=reliability.RELIABLE if terms.reliable else reliability.BEST_EFFORT,
+        durability=durability.TRANSIENT_LOCAL if terms.latched else durability.VOLATILE,
+    )
 
 
 def _versions() -> dict[str, str]:
