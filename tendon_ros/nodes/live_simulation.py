@@ -66,7 +66,7 @@ class LiveSimulation:
     def _start(self, epoch_ns: int, now: float) -> None:
         self._epoch_ns = epoch_ns
         self._ticks = 0
-        self._failed = False
+        self._failure: SimulationError | None = None
         self._held = dict.fromkeys(self.joints, 0.0)
         self._motion: Motion | None = None
         self._pace = Pace(self.instrument.control_period, now)
@@ -85,6 +85,11 @@ class LiveSimulation:
     def slipped(self) -> float:
         """Simulated time [s] given up since the last reset because the machine was too slow."""
         return self._pace.slipped
+
+    @property
+    def failure(self) -> SimulationError | None:
+        """Why the simulation cannot go on; None where it can, as after a reset."""
+        return self._failure
 
     @property
     def is_busy(self) -> bool:
@@ -107,14 +112,14 @@ class LiveSimulation:
         """
         with self._lock:
             ticks = self._pace.due(now)
-            if not ticks or self._failed:
+            if not ticks or self._failure is not None:
                 return None
             first = self._ticks
             wished = self._setpoints(first, ticks)
             try:
                 rows = self._simulation.run(wished, self._every)
-            except SimulationError:
-                self._failed = True
+            except SimulationError as error:
+                self._failure = error
                 raise
             self._ticks += ticks
             if not len(rows):

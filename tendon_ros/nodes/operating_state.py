@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from tendon_ros.base.errors import listed, TendonError
 
 
@@ -24,13 +26,25 @@ class OperatingState:
     """
     A state that begins enabled and homed, because a simulator needs neither power nor a search.
 
-    ``name`` is one of CRTK's: ENABLED, DISABLED, PAUSED, FAULT. Where it is not ENABLED, the
-    motors hold their set-points.
+    Where it is not ENABLED, the motors hold their set-points.
+
+    :param has_failed: tells whether the simulation cannot go on. It is asked each time and not
+        noted, because a note that comes late would undo a reset.
     """
 
-    def __init__(self) -> None:
-        self.name = 'ENABLED'
+    def __init__(self, has_failed: Callable[[], bool]) -> None:
+        self._has_failed = has_failed
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin anew."""
+        self._name = 'ENABLED'
         self.is_homed = True
+
+    @property
+    def name(self) -> str:
+        """One of CRTK's: ENABLED, DISABLED, PAUSED, FAULT."""
+        return 'FAULT' if self._has_failed() else self._name
 
     def command(self, text: str) -> None:
         """
@@ -47,17 +61,9 @@ class OperatingState:
             raise StateError(
                 f'state_command {text!r} does nothing in FAULT; call the service reset'
             )
-        self.name = _COMMANDS[text] or self.name
+        self._name = _COMMANDS[text] or self._name
         if text in {'home', 'unhome'}:
             self.is_homed = text == 'home'
-
-    def fail(self) -> None:
-        """Note that the simulation cannot go on."""
-        self.name = 'FAULT'
-
-    def reset(self) -> None:
-        """Begin anew."""
-        self.__init__()  # type: ignore[misc]
 
     def require_motion(self) -> None:
         """
@@ -65,7 +71,8 @@ class OperatingState:
 
         :raises StateError: with the command that mends it.
         """
-        if self.name != 'ENABLED':
-            fault = self.name == 'FAULT'
+        name = self.name
+        if name != 'ENABLED':
+            fault = name == 'FAULT'
             mend = 'call the service reset' if fault else 'send state_command enable'
-            raise StateError(f'motion refused in state {self.name}; {mend}')
+            raise StateError(f'motion refused in state {name}; {mend}')

@@ -46,12 +46,11 @@ class SimulatorNode(TendonNode):
         self.refuse_unknown_parameters()
         self._simulated = instrument
         self._live = self._prepared(instrument, values)
-        self._diverged = ''
         self._slipped = 0.0
         self._published = 0
         self._counted_at = time.monotonic()
         self._broadcast = Broadcast(self)
-        self._state = OperatingState()
+        self._state = OperatingState(lambda: self._live.failure is not None)
         self._crtk = CrtkState(self, self._state, lambda: self._live.is_busy, self._on_state)
         self.add_on_set_parameters_callback(self._on_parameters)
         for topic, act in (('servo_jp', self._live.servo), ('move_jp', self._live.move)):
@@ -78,8 +77,9 @@ class SimulatorNode(TendonNode):
         self._published, self._counted_at = 0, now
         behind = self._live.slipped
         level, text = Level.OK, f'simulating {self._live.instrument.name}'
-        if self._diverged:
-            level, text = Level.ERROR, self._diverged
+        failure = self._live.failure
+        if failure is not None:
+            level, text = Level.ERROR, _told(failure)
         elif behind > self._slipped:
             level = Level.WARN
             text = (
@@ -142,7 +142,7 @@ class SimulatorNode(TendonNode):
             try:
                 samples = self._live.advance(time.monotonic())
             except SimulationError as error:
-                self._fail(error)
+                self.get_logger().error(_told(error))
                 continue
             if samples is None:
                 continue
@@ -150,11 +150,6 @@ class SimulatorNode(TendonNode):
                 self._broadcast.publish(stamp, row)
                 self._published += 1
             self._crtk.publish()
-
-    def _fail(self, error: SimulationError) -> None:
-        self._diverged = f'{error}; nothing is published until the service reset is called'
-        self._state.fail()
-        self.get_logger().error(self._diverged)
 
     def _commander(
         self, topic: str, act: Callable[[Mapping[str, float]], None]
@@ -197,7 +192,6 @@ class SimulatorNode(TendonNode):
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._live.reset(time.time_ns(), time.monotonic())
-        self._diverged = ''
         self._slipped = 0.0
         self._state.reset()
         self._crtk.publish(always=True)
@@ -216,3 +210,7 @@ class SimulatorNode(TendonNode):
         response.success = True
         response.message = 'in the way' if request.data else 'taken away'
         return response
+
+
+def _told(failure: SimulationError) -> str:
+    return f'{failure}; nothing is published until the service reset is called'

@@ -50,7 +50,7 @@ def crtk_msgs(monkeypatch):
 def test_without_the_messages_it_is_said_once_and_nothing_else_happens(monkeypatch):
     monkeypatch.setitem(sys.modules, 'crtk_msgs', None)
     node = FakeNode()
-    state = CrtkState(node, OperatingState(), lambda: False, print)
+    state = CrtkState(node, OperatingState(lambda: False), lambda: False, print)
     state.publish(always=True)
     assert len(node.logged) == 1
     assert 'crtk_msgs is not installed' in node.logged[0]
@@ -60,7 +60,7 @@ def test_without_the_messages_it_is_said_once_and_nothing_else_happens(monkeypat
 @pytest.mark.usefixtures('crtk_msgs')
 def test_busy_is_published_when_it_changes_with_stamps_that_increase():
     node, busy = FakeNode(), [False]
-    state = CrtkState(node, OperatingState(), lambda: busy[0], print)
+    state = CrtkState(node, OperatingState(lambda: False), lambda: busy[0], print)
     for now in (False, True, True, False):
         busy[0] = now
         state.publish()
@@ -75,6 +75,6 @@ def test_busy_is_published_when_it_changes_with_stamps_that_increase():
 @pytest.mark.usefixtures('crtk_msgs')
 def test_commands_arrive():
     node, commands = FakeNode(), []
-    CrtkState(node, OperatingState(), lambda: False, commands.append)
+    CrtkState(node, OperatingState(lambda: False), lambda: False, commands.append)
     node.heard['state_command'](SimpleNamespace(string='pause'))
     assert commands == ['pause']

@@ -156,9 +156,12 @@ def test_a_divergence_is_said_once_and_a_reset_mends_it(rig):
     live = LiveSimulation(Diverging(Simulation(rig)), every=2, move_speed=0.5)
     live.reset(0, 0.0)
     collect(live, [0.0, 0.002])
-    with pytest.raises(SimulationError):
+    assert live.failure is None
+    with pytest.raises(SimulationError) as raised:
         live.advance(0.004)
+    assert live.failure is raised.value
     assert live.advance(0.006) is None
     assert live.wait(0.0061) > 0.0
     live.reset(0, 0.007)
+    assert live.failure is None
     assert live.advance(0.008) is not None

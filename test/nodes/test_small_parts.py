@@ -31,7 +31,7 @@ def test_drops_are_gaps_in_the_publishers_count():
 
 
 def test_motion_is_taken_only_where_enabled():
-    state = OperatingState()
+    state = OperatingState(lambda: False)
     state.require_motion()
     for command, name in [('pause', 'PAUSED'), ('resume', 'ENABLED'), ('disable', 'DISABLED')]:
         state.command(command)
@@ -47,12 +47,14 @@ def test_motion_is_taken_only_where_enabled():
 
 
 def test_only_a_reset_leads_out_of_fault():
-    state = OperatingState()
-    state.fail()
+    failed = [True]
+    state = OperatingState(lambda: failed[0])
+    assert state.name == 'FAULT'
     with pytest.raises(StateError, match='reset'):
         state.command('enable')
     with pytest.raises(StateError, match='reset'):
         state.require_motion()
+    failed[0] = False
     state.reset()
     state.require_motion()
 
