@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from tendon_ros.base.errors import listed, TendonError
 
 
 class StateError(TendonError):
-    """A command for the operating state that does not exist, or a motion that it forbids."""
+    """A command that does not exist or is not for this state, or a motion that it forbids."""
 
 
-#: what each command of CRTK makes of the state; None leaves it
-_COMMANDS = {
-    'enable': 'ENABLED',
-    'disable': 'DISABLED',
-    'pause': 'PAUSED',
-    'resume': 'ENABLED',
-    'home': None,
-    'unhome': None,
+_ANY = ('DISABLED', 'ENABLED', 'PAUSED')
+#: in which states CRTK takes each command, and what that makes of the state; None leaves it
+_COMMANDS: Mapping[str, tuple[tuple[str, ...], str | None]] = {
+    'enable': (('DISABLED', 'ENABLED'), 'ENABLED'),
+    'disable': (_ANY, 'DISABLED'),
+    'pause': (('ENABLED', 'PAUSED'), 'PAUSED'),
+    'resume': (('PAUSED',), 'ENABLED'),
+    'home': (_ANY, None),
+    'unhome': (_ANY, None),
+}
+#: what to do so that motion is taken again
+_WAYS_BACK = {
+    'DISABLED': 'send state_command enable',
+    'PAUSED': 'send state_command resume',
+    'FAULT': 'call the service reset',
 }
 
 
@@ -51,17 +58,22 @@ class OperatingState:
         Take a command of CRTK.
 
         :param text: ``enable``, ``disable``, ``pause``, ``resume``, ``home`` or ``unhome``.
-        :raises StateError: on another one; the state stays.
+        :raises StateError: on another one, and on one that the state does not take; it stays.
         """
         if text not in _COMMANDS:
             raise StateError(
                 f'state_command {text!r} does not exist; there are {listed(_COMMANDS)}'
             )
-        if self.name == 'FAULT':
+        name = self.name
+        if name == 'FAULT':
+            raise StateError(f'state_command {text!r} does nothing in FAULT; {_WAYS_BACK[name]}')
+        states, then = _COMMANDS[text]
+        if name not in states:
+            taken = [command for command, (states, _) in _COMMANDS.items() if name in states]
             raise StateError(
-                f'state_command {text!r} does nothing in FAULT; call the service reset'
+                f'state_command {text!r} does nothing in {name}; send one of {listed(taken)}'
             )
-        self._name = _COMMANDS[text] or self._name
+        self._name = then or name
         if text in {'home', 'unhome'}:
             self.is_homed = text == 'home'
 
@@ -73,6 +85,4 @@ class OperatingState:
         """
         name = self.name
         if name != 'ENABLED':
-            fault = name == 'FAULT'
-            mend = 'call the service reset' if fault else 'send state_command enable'
-            raise StateError(f'motion refused in state {name}; {mend}')
+            raise StateError(f'motion refused in state {name}; {_WAYS_BACK[name]}')

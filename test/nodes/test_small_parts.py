@@ -33,9 +33,10 @@ def test_drops_are_gaps_in_the_publishers_count():
 def test_motion_is_taken_only_where_enabled():
     state = OperatingState(lambda: False)
     state.require_motion()
-    for command, name in [('pause', 'PAUSED'), ('resume', 'ENABLED'), ('disable', 'DISABLED')]:
-        state.command(command)
-        assert state.name == name
+    state.command('pause')
+    with pytest.raises(StateError, match='PAUSED; send state_command resume'):
+        state.require_motion()
+    state.command('disable')
     with pytest.raises(StateError, match='DISABLED; send state_command enable'):
         state.require_motion()
     state.command('enable')
@@ -44,6 +45,36 @@ def test_motion_is_taken_only_where_enabled():
     with pytest.raises(StateError, match='there are disable, enable, home'):
         state.command('dance')
     assert state.name == 'ENABLED'
+
+
+@pytest.mark.parametrize(
+    ('before', 'command', 'after'),
+    [
+        ([], 'enable', 'ENABLED'),
+        ([], 'disable', 'DISABLED'),
+        ([], 'pause', 'PAUSED'),
+        ([], 'resume', None),
+        (['disable'], 'enable', 'ENABLED'),
+        (['disable'], 'disable', 'DISABLED'),
+        (['disable'], 'pause', None),
+        (['disable'], 'resume', None),
+        (['pause'], 'enable', None),
+        (['pause'], 'disable', 'DISABLED'),
+        (['pause'], 'pause', 'PAUSED'),
+        (['pause'], 'resume', 'ENABLED'),
+    ],
+)
+def test_the_transitions_are_those_of_crtk(before, command, after):
+    state = OperatingState(lambda: False)
+    for earlier in before:
+        state.command(earlier)
+    name = state.name
+    if after is None:
+        with pytest.raises(StateError, match=f'{command!r} does nothing in {name}; send one of'):
+            state.command(command)
+    else:
+        state.command(command)
+    assert state.name == (after or name)
 
 
 def test_only_a_reset_leads_out_of_fault():
