@@ -57,9 +57,11 @@ class Setting:
         """What values are allowed, in words; empty for all."""
         if self.choices:
             return f'one of {", ".join(self.choices)}'
-        if math.isfinite(self.low) or math.isfinite(self.high):
+        if math.isfinite(self.low) and math.isfinite(self.high):
             return f'{self.low:g} to {self.high:g}'
-        return ''
+        if math.isfinite(self.low):
+            return f'at least {self.low:g}'
+        return f'at most {self.high:g}' if math.isfinite(self.high) else ''
 
 
 #: settings that several nodes have

@@ -17,6 +17,8 @@ RATE = Setting('rate', 500.0, 'how often', 'Hz', 1.0, 1000.0)
 ENGINE = Setting('engine', 'auto', 'how', choices=('auto', 'plain'))
 SEED = Setting('seed', -1, 'of noise', '', -1, 10)
 CONTACT = Setting('contact', True, 'whether')
+AMPLITUDE = Setting('amplitude', 1.0, 'how far', 'rad', low=0.0)
+SHIFT = Setting('shift', 0.0, 'where', 'rad', high=2.0)
 
 
 @pytest.mark.parametrize(
@@ -24,6 +26,8 @@ CONTACT = Setting('contact', True, 'whether')
     [
         (RATE, 500, 'write 500.0'),
         (RATE, 0.5, r'0\.5 Hz is out of bounds; give 1 to 1000'),
+        (AMPLITUDE, -1.0, r'-1 rad is out of bounds; give at least 0$'),
+        (SHIFT, 3.0, r'3 rad is out of bounds; give at most 2$'),
         (RATE, float('nan'), 'not a finite number'),
         (RATE, '500', 'is not a number'),
         (SEED, 1.0, 'whole number'),
