@@ -7,7 +7,7 @@ import math
 
 from tendon_ros.bags.topics import place_of
 
-#: a channel that pauses for so long has stopped [s]
+#: what has not come for so long has stopped [s]
 STALE = 1.0
 
 

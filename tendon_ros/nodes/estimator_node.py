@@ -17,6 +17,7 @@ from tendon_ros.estimate import build_observer, Estimate, Measurement, Observer,
 from tendon_ros.model.instrument import Instrument
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.joints import joint_names
+from tendon_ros.nodes.arrivals import STALE
 from tendon_ros.nodes.broadcast import Broadcast
 from tendon_ros.nodes.conversions import from_stamp, values_of
 from tendon_ros.nodes.diagnostics import Level
@@ -25,9 +26,6 @@ from tendon_ros.nodes.settings import Value
 from tendon_ros.nodes.tendon_node import TendonNode
 
 type Message = JointState | WrenchStamped
-
-#: measurements this old are no longer called live [s]
-STALE = 1.0
 
 #: measurements that may wait while the machine is busy: none shall be left out
 DEPTH = 500

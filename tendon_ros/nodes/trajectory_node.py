@@ -16,6 +16,7 @@ from tendon_ros.base.recording import FloatArray
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.trajectory import check_limits
 from tendon_ros.model.trajectory_choice import chosen_trajectory, profiles
+from tendon_ros.nodes.arrivals import STALE
 from tendon_ros.nodes.conversions import joint_values
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.motion import plan
@@ -26,9 +27,6 @@ from tendon_ros.nodes.wire import wires_for
 
 #: how often to say what the start waits for [s]
 REMIND = 5.0
-
-#: a measurement this old does not say where the motors are [s]
-STALE = 1.0
 
 #: motors this near to the first point need no smooth way to it [rad]
 THERE = 1e-4
