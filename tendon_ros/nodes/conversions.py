@@ -19,6 +19,8 @@ from tendon_ros.bags.joint_states import resolve_names, width_of
 from tendon_ros.bags.topics import joint_channel, JOINT_FIELDS, WRENCH_TOPICS
 from tendon_ros.base.errors import listed, TendonError
 
+type Message = JointState | WrenchStamped
+
 
 class MessageError(TendonError):
     """A message that cannot be used; what held before it goes on to hold."""
@@ -114,9 +116,7 @@ def wrench_values(topic: str, message: WrenchStamped) -> dict[str, float]:
     return {force: float(message.wrench.force.y), torque: float(message.wrench.torque.z)}
 
 
-def values_of(
-    topic: str, message: JointState | WrenchStamped, joints: Sequence[str]
-) -> Mapping[str, float]:
+def values_of(topic: str, message: Message, joints: Sequence[str]) -> Mapping[str, float]:
     """
     Return what a message of any topic of the contract measured.
 

@@ -6,11 +6,9 @@ from collections.abc import Callable, Mapping
 import math
 import time
 
-from geometry_msgs.msg import WrenchStamped
-from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from tendon_ros.bags.topics import JOINT_TOPICS, place_of
+from tendon_ros.bags.topics import JOINT_TOPICS
 from tendon_ros.base.errors import TendonError
 from tendon_ros.base.names import names_in
 from tendon_ros.estimate import build_observer, Estimate, Measurement, Observer, Synchroniser
@@ -19,16 +17,12 @@ from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.joints import joint_names
 from tendon_ros.nodes.arrivals import STALE
 from tendon_ros.nodes.broadcast import Broadcast
-from tendon_ros.nodes.conversions import from_stamp, values_of
+from tendon_ros.nodes.conversions import from_stamp, Message, values_of
 from tendon_ros.nodes.diagnostics import Level
 from tendon_ros.nodes.estimator import PROGRAM
+from tendon_ros.nodes.measurements import hear
 from tendon_ros.nodes.settings import Value
 from tendon_ros.nodes.tendon_node import TendonNode
-
-type Message = JointState | WrenchStamped
-
-#: measurements that may wait while the machine is busy: none shall be left out
-DEPTH = 500
 
 #: part of the time spent on estimates above which measurements pile up
 FULL = 0.9
@@ -68,10 +62,7 @@ class EstimatorNode(TendonNode):
         self._busy = 0.0
         self._counted_at = time.monotonic()
         self._warm_up()
-        topics = sorted({place_of(channel)[0] for channel in self._observer.needs})
-        for topic in topics:
-            kind = JointState if topic in JOINT_TOPICS else WrenchStamped
-            self.create_subscription(kind, topic, self._hearer(topic, instrument), DEPTH)
+        topics = hear(self, self._observer.needs, lambda topic: self._hearer(topic, instrument))
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.get_logger().info(
             f'ready after {time.monotonic() - start:.1f} s, listening to {", ".join(topics)}'

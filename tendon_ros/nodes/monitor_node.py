@@ -8,11 +8,9 @@ from pathlib import Path
 import threading
 import time
 
-from geometry_msgs.msg import WrenchStamped
-from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from tendon_ros.bags.topics import JOINT_TOPICS, place_of
+from tendon_ros.bags.topics import JOINT_TOPICS
 from tendon_ros.base.errors import TendonError
 from tendon_ros.diagnose.watch import Watch, WatchReport, WatchSettings
 from tendon_ros.diagnose.watch_gap import gap_after
@@ -21,17 +19,13 @@ from tendon_ros.estimate import Measurement
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.joints import joint_names
 from tendon_ros.nodes.arrivals import Arrivals
-from tendon_ros.nodes.conversions import from_stamp, values_of
+from tendon_ros.nodes.conversions import from_stamp, Message, values_of
 from tendon_ros.nodes.diagnostics import Level
+from tendon_ros.nodes.measurements import hear
 from tendon_ros.nodes.monitor import PROGRAM
 from tendon_ros.nodes.monitor_status import channels, whole
 from tendon_ros.nodes.settings import SettingError, Value
 from tendon_ros.nodes.tendon_node import TendonNode
-
-type Message = JointState | WrenchStamped
-
-#: measurements that may wait while the machine is busy: none shall be left out
-DEPTH = 500
 
 #: how often the thread that compares looks whether a window is full [s]
 NAP = 0.05
@@ -66,11 +60,8 @@ class MonitorNode(TendonNode):
         self._counted_at = time.monotonic()
         measured = {sensor.channel for sensor in instrument.sensors}
         self._arrivals = Arrivals(measured)
-        topics = sorted({place_of(channel)[0] for channel in measured})
         self._joints = joint_names(instrument)
-        for topic in topics:
-            kind = JointState if topic in JOINT_TOPICS else WrenchStamped
-            self.create_subscription(kind, topic, self._hearer(topic), DEPTH)
+        topics = hear(self, measured, self._hearer)
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.get_logger().info(
             f'ready after {time.monotonic() - start:.1f} s, listening to {", ".join(topics)}'
