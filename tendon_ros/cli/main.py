@@ -13,15 +13,13 @@ import importlib
 import os
 import pkgutil
 import sys
-from typing import NoReturn, Protocol
+from typing import Protocol
 
 from tendon_ros import __version__, cli
+from tendon_ros.base.command_line import DONE, FAILED, MISTAKE, Parser
 from tendon_ros.base.errors import TendonError
 
 _PREFIX = 'verb_'
-
-#: exit status: done; anything that is neither; the user's arguments or input are at fault
-DONE, FAILED, MISTAKE = 0, 1, 2
 
 
 class Verb(Protocol):
@@ -36,13 +34,6 @@ class Verb(Protocol):
         """Do the task."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line instead of printing the usage first."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(MISTAKE, f'{self.prog}: {message}; see `{self.prog} --help`\n')
-
-
 def verbs() -> dict[str, Verb]:
     """Return the verbs that exist, by name."""
     found: dict[str, Verb] = {}
@@ -55,13 +46,13 @@ def verbs() -> dict[str, Verb]:
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser with all verbs."""
-    parser = _Parser(
+    parser = Parser(
         prog='tendon',
         description='Simulate, estimate and diagnose tendon-driven surgical instruments.',
     )
     parser.add_argument('--version', action='version', version=f'tendon {__version__}')
     verb_parsers = parser.add_subparsers(
-        dest='verb', metavar='VERB', required=True, parser_class=_Parser
+        dest='verb', metavar='VERB', required=True, parser_class=Parser
     )
     for name, verb in sorted(verbs().items()):
         one = verb_parsers.add_parser(name, help=verb.HELP, description=verb.HELP)

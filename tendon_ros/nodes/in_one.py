@@ -6,13 +6,13 @@ The same nodes as in processes of their own, with the same topics; they share on
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 import sys
 
+from tendon_ros.base.command_line import MISTAKE, Parser
 from tendon_ros.base.errors import TendonError
 from tendon_ros.nodes import estimator, simulator, trajectory
-from tendon_ros.nodes.launcher import MISTAKE, run, split_ros_arguments
+from tendon_ros.nodes.launcher import run, split_ros_arguments
 from tendon_ros.nodes.settings import add_options, given_options
 
 #: a thread that wakes must not wait for another one's turn to end, by default 5 ms [s]
@@ -29,7 +29,7 @@ def run_in_one(argv: Sequence[str] | None = None) -> int:
     :return: the exit status.
     """
     own, ros = split_ros_arguments(sys.argv[1:] if argv is None else argv)
-    parser = argparse.ArgumentParser(prog='in_one', description=__doc__)
+    parser = Parser(prog='in_one', description=__doc__)
     # An option that several nodes have goes to each of them; others belong to one.
     known = {one.name: one for program in PROGRAMS for one in program.settings}
     add_options(parser, known.values())

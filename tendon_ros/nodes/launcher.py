@@ -8,7 +8,6 @@ nothing but wait for that flag, because Python runs signal handlers in no other 
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -16,14 +15,12 @@ import os
 import signal
 import sys
 import threading
-from typing import Any, NoReturn
+from typing import Any
 
 from tendon_ros import __version__
+from tendon_ros.base.command_line import DONE, MISTAKE, Parser
 from tendon_ros.base.errors import TendonError
 from tendon_ros.nodes.settings import add_options, given_options, Setting, Value
-
-#: exit status: done; the user's arguments or input are at fault; Python itself leaves with 1
-DONE, MISTAKE = 0, 2
 
 #: how long nodes that are told to stop may go on to get ready [s]
 GRACE = 1.0
@@ -45,13 +42,6 @@ class Program:
     events: bool = True
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line instead of printing the usage first."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(MISTAKE, f'{self.prog}: {message}; see `{self.prog} --help`\n')
-
-
 def start(program: Program, argv: Sequence[str] | None = None) -> int:
     """
     Run one node in this process.
@@ -61,7 +51,7 @@ def start(program: Program, argv: Sequence[str] | None = None) -> int:
     :return: the exit status.
     """
     own, ros = split_ros_arguments(sys.argv[1:] if argv is None else argv)
-    parser = _Parser(
+    parser = Parser(
         prog=program.name,
         description=program.help,
         epilog='Every option is also a ROS parameter; behind --ros-args stand what ROS takes: '

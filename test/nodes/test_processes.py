@@ -337,6 +337,7 @@ def test_the_estimator_leaves_out_what_it_cannot_use(client, start):
             ['--patience', '0.3', '--ros-args', '-r', '__ns:=/no'],
             '/no/actuator/meas',
         ),
+        ('in_one', ['--rte', '5'], 'unrecognized arguments: --rte 5; see `in_one --help`'),
         ('recorder', ['--out', '.'], '.: cannot be created'),
         ('recorder', ['--duration', '-1'], 'out of bounds'),
         ('recorder', ['--topics', 'good, bad topic!'], "cannot use the name 'bad topic!'"),
