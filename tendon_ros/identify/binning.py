@@ -120,6 +120,7 @@ class Driven:
         time = channel.sampling * np.arange(samples, dtype=np.float64)
         fine = motion_of(channel, drive.sensor, float(channel.time[0]), channel.sampling, samples)
         reading = reading_error(channel, drive.sensor)
+        routes = [r.route for r in instrument.loops] + [c.route for c in instrument.couplings]
         return cls(
             time,
             CubicSpline(time, fine),
@@ -127,7 +128,7 @@ class Driven:
             reading.apart(fine, channel.sampling),
             float(Numbers(instrument)['inertia'][instrument.index(drive.pulley)]),
             recording[torques[0]],
-            not any(drive.pulley in r.route for r in (*instrument.loops, *instrument.couplings)),
+            not any(drive.pulley in route for route in routes),
         )
 
     @cached_property
