@@ -22,15 +22,21 @@ SAID = 'looking again: where friction holds, much of what stays is chance'
 
 
 @pytest.fixture(scope='module')
-def rubbing(bench, measured_on):
-    """Return a recording in contact, with holds in which friction of 3 holds."""
-    return measured_on(
+def pressed(bench, measured_on):
+    """Return a way to a recording in contact, with holds in which so much friction of 3 holds."""
+    return lambda torque: measured_on(
         bench,
-        ('coulomb_friction', 'pulley_3', {'torque': 0.3}),
+        ('coulomb_friction', 'pulley_3', {'torque': torque}),
         trajectory='paper_fig12',
         settings=(),
         touching=True,
     )
+
+
+@pytest.fixture(scope='module')
+def rubbing(pressed):
+    """Return one with much friction."""
+    return pressed(0.3)
 
 
 @pytest.fixture(scope='module')
@@ -117,10 +123,15 @@ def test_much_that_stays_where_friction_holds_asks_for_another_look(
     assert (max(doubted) > 2.0) is looks_again
 
 
+def test_where_holds_leave_little_sizes_are_what_they_were(bench, pressed):
+    ready = prepared([pressed(0.1)], bench)
+    start, right = fits(ready.problem, (RUBS, {'torque': 0.1}))
+    assert beside_chance(ready, start.model, right) == (ready, right)
+
+
 def test_sizes_are_fitted_beside_what_holds_leave_to_chance(bench, rubbing, holding):
     """What a hold is off by chance moves a size, unless it is doubted."""
     start, right = fits(holding.problem, (RUBS, {'torque': 0.3}))
-    assert beside_chance(holding, start.model, right) == (holding, right)
     cell = rubbing.channels['load_cell/force']
     once, again = (np.abs(cell.time - about) < 0.75 for about in (3.75, 8.75))
     elsewhere = Channel(cell.name, cell.time, cell.value + 1.0 * once - 1.0 * again)

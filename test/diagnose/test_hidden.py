@@ -12,9 +12,19 @@ from tendon_ros.model.instrument_file import load_instrument
 EFFORT = 'actuator/pulley_body/effort'
 
 
-@pytest.mark.parametrize(('more', 'told'), [(0.0, True), (0.05, True), (0.05, False)])
-def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured_on, more, told):
+@pytest.fixture
+def steady():
+    """Return one body on a motor whose loop damps so little that it hardly shakes by counts."""
     body = load_instrument('single_body')
+    [motor] = body.motors
+    return replace(body, motors=(replace(motor, controller=replace(motor.controller, kd=0.005)),))
+
+
+@pytest.mark.parametrize(('more', 'told'), [(0.0, True), (0.05, True), (0.05, False)])
+def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(
+    steady, measured_on, more, told
+):
+    body = steady
     run = measured_on(body)
     effort = run[EFFORT]
     shaken = effort.value + more * np.random.default_rng(1).standard_normal(effort.value.size)
@@ -29,17 +39,17 @@ def test_what_shakes_faster_than_bins_is_said_where_the_sensor_is_known(measured
 
 
 @pytest.mark.parametrize('times', [1.0, 30.0])
-def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(measured_on, times):
-    body = load_instrument('single_body')
-    # a loop that damps hardly shakes by counts
-    motor = replace(body.motors[0], controller=replace(body.motors[0].controller, kd=0.005))
+def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(
+    steady, measured_on, times
+):
+    body = steady
     sensors = [
         replace(s, noise=s.noise / times, resolution=s.resolution / times)
         if s.channel == EFFORT
         else s
         for s in body.sensors
     ]
-    body = replace(body, motors=(motor,), sensors=tuple(sensors))
+    body = replace(body, sensors=tuple(sensors))
     ready = prepared([measured_on(body)], body)
     words = coarse_words(ready)
     assert bool(words) is (times > 1.0)
@@ -51,15 +61,13 @@ def test_what_counts_hide_is_said_where_it_is_more_than_the_sensors_own_noise(me
 
 
 def test_noise_that_hides_most_of_what_a_channel_does_makes_one_doubt_that_there_is_no_gap(
-    measured_on,
+    steady, measured_on
 ):
-    body = load_instrument('single_body')
-    # a loop that shakes by counts, a torque sensor that tells it, and hardly any motion
-    motor = replace(body.motors[0], controller=replace(body.motors[0].controller, kd=0.005))
+    # a torque sensor that tells what counts make of it, and hardly any motion
     sensors = [
-        replace(s, noise=s.noise / 30.0) if s.channel == EFFORT else s for s in body.sensors
+        replace(s, noise=s.noise / 30.0) if s.channel == EFFORT else s for s in steady.sensors
     ]
-    body = replace(body, motors=(motor,), sensors=tuple(sensors))
+    body = replace(steady, sensors=tuple(sensors))
     still = measured_on(body, settings=(('duration', '6 s'), ('amplitude', '0.3 deg')))
     ready = prepared([still], body)
     [said] = [one for one in coarse_words(ready, much=True) if one.startswith(EFFORT)]

@@ -179,6 +179,9 @@ def test_the_effects_of_a_file_have_a_form_too(body, rubbing, measured_on):
 
 
 def test_what_a_sound_rig_leaves_ties_little(body, measured_on):
+    # one whose loop hardly shakes by counts
+    [motor] = body.motors
+    body = replace(body, motors=(replace(motor, controller=replace(motor.controller, kd=0.005)),))
     problem = prepared([measured_on(body, settings=WIDE)], body).problem
     assert tie(problem, problem.fitted(problem.empty, rounds=2)) < 0.05
 
