@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 import csv
 from dataclasses import dataclass
@@ -17,6 +18,8 @@ from tendon_ros.base.recording import FloatArray
 DELIMITERS = ';\t,'
 #: rows that tell what it is
 LOOKED_AT = 20
+#: characters of a line that a message shows
+SHOWN = 40
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,8 @@ def read_csv(path: Path) -> TextColumns:
     :raises ValueError: where it holds no table; the libraries raise others.
     """
     with path.open(newline='', encoding='utf-8-sig') as stream:
-        lines = [line for line in stream if line.strip() and not line.startswith('#')]
+        every = [line for line in stream if line.strip()]
+    lines = [line for line in every if not line.startswith('#')]
     if not lines:
         raise ValueError('it is empty')
     delimiter = _delimiter(lines[:LOOKED_AT])
@@ -57,11 +61,25 @@ def read_csv(path: Path) -> TextColumns:
         names, first = [str(i) for i in range(len(rows[0]))], 0
     except ValueError:
         names, first = [cell.strip() for cell in rows[0]], 1
-    if len(set(names)) < len(names):
-        raise ValueError('two columns have the same name')
+    if first and len(rows) > 2 and len(rows[1]) == len(rows[2]) != len(names):
+        raise ValueError(
+            f'its first line names {len(names)} columns ({lines[0].strip()[:SHOWN]}), the next '
+            f'has {len(rows[1])} cells; delete what stands above the names of the columns'
+        )
+    doubled = [name for name, count in Counter(names).items() if count > 1]
+    if doubled:
+        at = ' and '.join(str(i + 1) for i, name in enumerate(names) if name == doubled[0])
+        raise ValueError(
+            f'columns {at} are both called {doubled[0]!r} in its first line; rename one of them'
+        )
     warnings: tuple[str, ...] = ()
-    if len(rows) > first + 1 and len(rows[-1]) < len(names) and not lines[-1].endswith('\n'):
+    if not first and every[0].startswith('#'):
         warnings = (
+            f'no names of columns, they go by number from 0; {every[0].strip()[:SHOWN]!r} was '
+            'taken for a comment',
+        )
+    if len(rows) > first + 1 and len(rows[-1]) < len(names) and not lines[-1].endswith('\n'):
+        warnings += (
             f'the last row, {len(rows)}, is cut off after {len(rows[-1])} of {len(names)} cells; '
             'left out',
         )

@@ -87,7 +87,10 @@ class Patience:
         ] * self._unasked
         if not (self._cut or self._short):
             return unasked
-        told = f'the search for causes was cut short, so as to take no more than {minutes:.3g} min'
+        told = (
+            'the search for causes was cut short after as many steps as two cores usually take in '
+            f'{minutes:.3g} min'
+        )
         if unmet:
             names = ', '.join(f'{c.effect} at {c.place}' for c in unmet)
             told += f', before others were tried in the place of {names}: not named for that'

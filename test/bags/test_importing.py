@@ -363,7 +363,11 @@ def test_a_file_that_does_not_fit_the_mapping_is_one_line(npz, tmp_path, data, w
         ('', 'empty'),
         ('t,motor\n1,2\n3\n', 'row 3 has 1 cells for 2 columns'),
         ('t,motor\n1,x\n', "column motor: 'x' is not a number"),
-        ('t,t\n1,2\n', 'same name'),
+        ('t,t\n1,2\n', "columns 1 and 2 are both called 't' in its first line"),
+        (
+            'PuTTY log 17\nt,motor\n1,2\n',
+            r'its first line names 1 columns \(PuTTY log 17\), the next has 2 cells; delete what',
+        ),
     ],
 )
 def test_a_bad_csv_is_one_line(tmp_path, text, words):
@@ -553,3 +557,13 @@ def test_a_joint_that_is_no_pulley_is_told(tmp_path, npz):
     [run] = imported(tmp_path, npz, changed(channels=channels), ['1'])
     [told] = run.warnings
     assert told.endswith('so that pulley link has pulley/pulley_link/position')
+
+
+def test_names_behind_a_hash_are_told(tmp_path):
+    (tmp_path / 'x.csv').write_text('# t, motor\n' + ''.join(f'{n}e-3,{n}\n' for n in range(40)))
+    fields = {'time': {'column': 0, 'unit': 's'}}
+    channels = {'actuator/pulley_motor/position': {'column': 1, 'unit': 'rad'}}
+    text = changed(format='csv', runs=None, channels=channels, **fields)
+    [run] = imported(tmp_path, tmp_path / 'x.csv', text)
+    [warning] = run.warnings
+    assert "they go by number from 0; '# t, motor' was taken for a comment" in warning
