@@ -13,6 +13,8 @@ from tendon_ros.base.errors import listed, OutputError
 from tendon_ros.base.outputs import ANOTHER, check_not_read, check_reachable
 
 METADATA = 'metadata.yaml'
+#: files that a message names
+NAMED = 3
 #: what SQLite keeps beside a database that is open
 _BESIDE = ('', '-wal', '-shm', '-journal')
 
@@ -71,7 +73,7 @@ def _beside_a_bag(folder: Path) -> list[str]:
     return [p.name for p in folder.iterdir() if p.name not in own or p.is_dir()]
 
 
-def _some(names: list[str], most: int = 3) -> str:
+def _some(names: list[str]) -> str:
     """Return the first of some names, and how many more there are."""
-    more = len(names) - most
-    return f'{listed(sorted(names)[:most])}{f" and {more} more" if more > 0 else ""}'
+    more = len(names) - NAMED
+    return f'{listed(sorted(names)[:NAMED])}{f" and {more} more" if more > 0 else ""}'

@@ -193,7 +193,7 @@ def ran_all(
         rig = rig_with(base, faults, kind)
         closed = setup.closed(kind)
         out = run(rig, commands[kind], closed=closed)
-        result[kind] = Ran(rig, out, clean(rig, out, setup.channels, closed=closed), closed)
+        result[kind] = Ran(out, clean(rig, out, setup.channels, closed=closed), closed)
     return result
 
 

@@ -26,9 +26,8 @@ _END = 50
 
 @dataclass(frozen=True)
 class Ran:
-    """A rig, its run, what clean sensors said, and whether the tip had a wall."""
+    """A run of a rig, what clean sensors said, and whether the tip had a wall."""
 
-    rig: Rig
     out: FloatArray
     values: dict[str, FloatArray]
     closed: bool

@@ -49,17 +49,19 @@ class Bin:
     true: Fraction
 
 
-def reliability(chances: Sequence[tuple[float, bool]], bins: int = 10) -> tuple[Bin, ...]:
+BINS = 10
+
+
+def reliability(chances: Sequence[tuple[float, bool]]) -> tuple[Bin, ...]:
     """
-    Return stated probabilities against what came true.
+    Return stated probabilities against what came true, in ten bins of equal width.
 
     :param chances: probability, and whether it came true.
-    :param bins: of equal width.
     :return: the bins that hold something.
     """
     result = []
-    for n in range(bins):
-        inside = [c for c in chances if min(int(c[0] * bins), bins - 1) == n]
+    for n in range(BINS):
+        inside = [c for c in chances if min(int(c[0] * BINS), BINS - 1) == n]
         if inside:
             mean = sum(p for p, _ in inside) / len(inside)
             result.append(Bin(mean, Fraction(sum(true for _, true in inside), len(inside))))

@@ -101,9 +101,8 @@ def deviation(sensor: Sensor) -> float:
     :param sensor: the sensor.
     :return: noise and rounding together, in the unit of the reading.
     """
-    known = float(np.hypot(sensor.noise, sensor.resolution / np.sqrt(12.0)))
-    if known > 0.0:
-        return known
+    if sensor.error > 0.0:
+        return sensor.error
     return UNSTATED_ANGLE if sensor.kind == 'angle' else UNSTATED_TORQUE
 
 

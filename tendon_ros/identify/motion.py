@@ -129,7 +129,7 @@ def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:
         steps = steps[steps > 0.0]
         count = float(np.quantile(steps, 0.02)) if steps.size else 0.0
         return ReadingError(count / np.sqrt(12.0), 0.0, count)
-    known = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
+    known = sensor.error
     moves = sensor.kind == 'angle'
     told = scatter(channel, max(sensor.resolution, sensor.noise)) if moves else None
     if told is None or told.usual <= NOISIER * known:

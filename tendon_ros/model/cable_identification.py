@@ -134,19 +134,21 @@ def _misses(unknown: FloatArray, wanted: FloatArray) -> FloatArray:
     return misses
 
 
-def tabulated(law: PowerLaw, name: str, up_to: float, spacing: float = 2e-5) -> Curve:
+SPACING = 2e-5  # between points of a table [m]
+
+
+def tabulated(law: PowerLaw, name: str, up_to: float) -> Curve:
     """
     Return a law as a table, as a tension test would give it.
 
     :param law: the law.
     :param name: of the curve.
     :param up_to: the table reaches at least this tension [N].
-    :param spacing: between points [m].
     :return: the curve, tensions to six digits.
     """
     end: float = brentq(lambda x: float(law.tension(np.array([x]))[0]) - up_to, 0.0, 1.0)
-    count = int(np.ceil(end / spacing - 1e-9))
-    elongation = [float(f'{i * spacing:.6g}') for i in range(count + 1)]
+    count = int(np.ceil(end / SPACING - 1e-9))
+    elongation = [float(f'{i * SPACING:.6g}') for i in range(count + 1)]
     tension = [float(f'{t:.6g}') for t in law.tension(np.array(elongation))]
     return Curve(name, tuple(elongation), tuple(tension))
 

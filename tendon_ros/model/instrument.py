@@ -195,6 +195,11 @@ class Sensor:
     misfit: float = 0.0
     zeroed: bool = True
 
+    @property
+    def error(self) -> float:
+        """Standard deviation of one reading by its data sheet: noise and rounding together."""
+        return math.hypot(self.noise, self.resolution / math.sqrt(12.0))
+
 
 @dataclass(frozen=True)
 class EffectUse:

@@ -16,6 +16,7 @@ from tendon_ros.base.errors import listed, TendonError
 
 Value = bool | int | float | str
 
+SHOWN = 12  # names in a message
 _KINDS = {bool: 'true or false', int: 'a whole number', float: 'a number', str: 'a text'}
 
 
@@ -148,8 +149,8 @@ def given_options(args: argparse.Namespace, settings: Iterable[Setting]) -> Mapp
     return {name: checked(one, v) for name, (one, v) in values.items() if v is not None}
 
 
-def _short(names: set[str], most: int = 12) -> str:
+def _short(names: set[str]) -> str:
     """Return names for a message; an instrument has hundreds of parameters of effects."""
     plain = {name for name in names if not name.startswith('effects.')}
     more = ' and effects.PLACE.EFFECT.PARAMETER' if plain != names else ''
-    return listed(sorted(plain)[:most]) + more
+    return listed(sorted(plain)[:SHOWN]) + more

@@ -26,6 +26,7 @@ BELOW = 0.02  # of the range: a top must hold more samples than lie so near belo
 EXPLAINED = 0.8  # share of the variance that the other channels must explain
 BEYOND = 3.0  # deviations of what they leave
 USELESS = 0.5  # share of clipped samples beyond which nothing is kept
+WIDTH = 15  # samples of a moving mean
 ROWS = 4000  # samples that the relation is taken from
 
 
@@ -147,10 +148,10 @@ def _from_the_others(
     return expected, float(left.std())
 
 
-def _smooth(value: FloatArray, width: int = 15) -> FloatArray:
+def _smooth(value: FloatArray) -> FloatArray:
     """Return a moving mean that holds its ends."""
-    padded = np.pad(value, width // 2, mode='edge')
-    return np.convolve(padded, np.full(width, 1.0 / width), mode='valid')
+    padded = np.pad(value, WIDTH // 2, mode='edge')
+    return np.convolve(padded, np.full(WIDTH, 1.0 / WIDTH), mode='valid')
 
 
 def _widened(mask: BoolArray) -> BoolArray:

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from tendon_ros.base.quantity import written
 from tendon_ros.base.recording import Recording
 from tendon_ros.diagnose.intake.restated import restated
@@ -37,12 +35,11 @@ def as_read(
 
     def noisier(sensor: Sensor) -> tuple[Sensor, str] | None:
         told = _quietest(sensor, recordings) if sensor.channel in driving else None
-        known = float(np.hypot(sensor.resolution / np.sqrt(12.0), sensor.noise))
-        if told is None or not told.usual > NOISIER * known > 0.0:
+        if told is None or not told.usual > NOISIER * sensor.error > 0.0:
             return None
         said = (
             f'{sensor.name}: in motion its readings scatter by {1e3 * told.usual:.2g} mrad, '
-            f'{told.usual / known:.0f} times what the instrument file says; '
+            f'{told.usual / sensor.error:.0f} times what the instrument file says; '
         )
         if told.usual**2 > 2.0 * told.still**2:
             return sensor, (
