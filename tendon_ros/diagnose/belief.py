@@ -161,6 +161,9 @@ def belief(ready: Prepared, found: Found) -> Belief:
         # who only helps a push is of no use without it, nor is who stands for a stop elsewhere
         if k not in accepted | local
         and not cause.instants
+        # nor is an encoder that reads five times what turns any good in a repaired file
+        and not spent(cause, final.model.values(k))
+        and not far_fetched(cause, final.model.values(k))
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
         and not takes_noise(problem, found, k)

@@ -329,3 +329,19 @@ def test_a_push_that_stands_out_only_beside_what_is_not_believed_is_none(measure
     # one that is believed, alone or with others
     assert _happening(ready, found, (friction, pushed), ()) == (friction, pushed)
     assert _happening(ready, found, doubted, (0,)) == doubted
+
+
+@pytest.mark.parametrize(('inertia', 'kept'), [(1.5, True), (8.0, False)])
+def test_what_is_further_off_than_any_is_stays_out_of_the_repaired_file(
+    found_of, monkeypatch, inertia, kept
+):
+    ready, found = found_of((Candidate('inertia', 'pulley_M'), {'scale': 1.2}))
+    monkeypatch.setattr('tendon_ros.diagnose.belief.chance', lambda *_: 0.2)
+    monkeypatch.setattr('tendon_ros.diagnose.belief.spoils', lambda *_: False)
+    monkeypatch.setattr('tendon_ros.diagnose.belief.takes_noise', lambda *_: False)
+    final = found.final.model
+    place = final.causes[0].coordinates.place({'scale': inertia})
+    found.states[-1] = replace(found.final, model=replace(final, z=(place,)))
+    judged = belief(ready, found)
+    assert judged.accepted == ()
+    assert judged.kept == ((0,) if kept else ())
