@@ -17,9 +17,9 @@ from tendon_ros.diagnose.everywhere import everywhere
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.steps import Report
 from tendon_ros.effects.sensor_delay import LONGEST
-from tendon_ros.identify.afar import kinds_of, swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.multistart import kinds_of, swings
 from tendon_ros.identify.tied import RUBS, tied
 
 #: [s] by which a filter may make a speed late

@@ -23,8 +23,9 @@ from tendon_ros.diagnose.bent import (
     spent,
     vanishes,
 )
+from tendon_ros.diagnose.cancelling import absorbed, undoing
 from tendon_ros.diagnose.clock import Early, early
-from tendon_ros.diagnose.company import companies, rubbing
+from tendon_ros.diagnose.compensating import companies, rubbing
 from tendon_ros.diagnose.ends import at_an_end
 from tendon_ros.diagnose.excusing import excuses
 from tendon_ros.diagnose.found import Found
@@ -44,7 +45,6 @@ from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
-from tendon_ros.diagnose.undoing import absorbed, undoing
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
 

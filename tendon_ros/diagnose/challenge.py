@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tendon_ros.diagnose.begun import Begun
+from tendon_ros.diagnose.ablation import rest_of, sets_the_unit
 from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.left_out import rest_of, sets_the_unit
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
@@ -29,13 +28,14 @@ from tendon_ros.diagnose.rivals import (
 )
 from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
 from tendon_ros.diagnose.valleys import nudged, waved
+from tendon_ros.diagnose.warm_start import Begun
 from tendon_ros.diagnose.worth import hopeless
-from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.first_order_worth import worths
 from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.multistart import swings
 from tendon_ros.identify.screening import Screen, Seen
-from tendon_ros.identify.worths import worths
 
 #: rivals that are fitted as carefully as the cause itself where only far better ones matter
 BRIEFLY = 2

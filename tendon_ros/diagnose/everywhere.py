@@ -12,15 +12,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 import math
 
+from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import needed
-from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.first_order_worth import growth
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.multistart import swings
 from tendon_ros.identify.tied import tied
-from tendon_ros.identify.worths import growth
 
 #: what every real transmission has; laws that hold these are tried later, in their place
 USUAL = ('coulomb_friction', 'tension_friction', 'backlash', 'joint_spring', 'load_cell_bias')

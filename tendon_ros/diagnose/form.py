@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.effects import find
+from tendon_ros.identify.first_order_worth import worths
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.sticking import sticking
-from tendon_ros.identify.worths import worths
 from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import spent
+from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.intervals import CLUSTER
 from tendon_ros.diagnose.steps import best_of, Steps
-from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.worth import LEAST
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model

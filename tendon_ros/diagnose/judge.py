@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.cancelling import its_own
 from tendon_ros.diagnose.form import form_parts, form_power, own_power, summed, tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.further import saved
@@ -16,7 +17,6 @@ from tendon_ros.diagnose.imitable import alike
 from tendon_ros.diagnose.outstanding import stands_out_in_time
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.diagnose.signs import BOUNDLESS, LEFT_NOISE, probability, Signs
-from tendon_ros.diagnose.undoing import its_own
 from tendon_ros.diagnose.worth import (
     by_channel,
     gains,

@@ -17,8 +17,8 @@ from scipy.interpolate import CubicSpline
 
 from tendon_ros.base.recording import Recording
 from tendon_ros.identify.driving import encoder_channels
-from tendon_ros.identify.hearing import heard, neighbours
 from tendon_ros.identify.motion import reading_error, ReadingError
+from tendon_ros.identify.noise_estimate import heard, neighbours
 from tendon_ros.identify.repetition import unrepeated
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.segment import Measured, Segment

@@ -11,8 +11,8 @@ from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.steps import judged_cost, Steps
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.first_order_worth import worths
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED
-from tendon_ros.identify.worths import worths
 
 #: part of what a cause explains that a rival which is close may leave; and where channels weigh by
 #: what stays of them, since less of that is noise

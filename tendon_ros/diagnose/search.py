@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tendon_ros.diagnose.asking import asked_again
+from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.everywhere import without_idle
 from tendon_ros.diagnose.first import FirstRound
@@ -23,7 +24,6 @@ from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.rounds import MANY, promising, Round
 from tendon_ros.diagnose.steps import best_of, Report, Steps
-from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.diagnose.valleys import started
 from tendon_ros.diagnose.worth import (
     beyond_laws,

@@ -35,14 +35,12 @@ from tendon_ros.diagnose.ends import end_of_all
 from tendon_ros.diagnose.evidence import Evidence
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.gap import gaps, offs
-from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.hidden import coarse_words, loud_words
 from tendon_ros.diagnose.intake import admitted
 from tendon_ros.diagnose.intake.limits import strong_words
 from tendon_ros.diagnose.intervals import unsized
 from tendon_ros.diagnose.locate import whereabouts
 from tendon_ros.diagnose.logged import logged_words
-from tendon_ros.diagnose.looks import Looks
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.naming import causes_of, judged, NAMED, strained, verdict_of, Weighed
 from tendon_ros.diagnose.next_step import next_experiments
@@ -51,8 +49,10 @@ from tendon_ros.diagnose.patience import Patience, USUAL
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.result import Diagnosis, NextExperiment, Unexplained
 from tendon_ros.diagnose.rivals import contested
+from tendon_ros.diagnose.search_passes import Looks
 from tendon_ros.diagnose.spread import known_words
 from tendon_ros.diagnose.unexplained import unexplained
+from tendon_ros.diagnose.zero_order_hold import as_set
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.driving import as_recorded, said_of_torque, with_encoders
 from tendon_ros.identify.magnitude import magnitude_of

@@ -19,9 +19,9 @@ from tendon_ros.diagnose.worth import needed, worthwhile
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.first_order_worth import worths
 from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.screening import Proposal, Screen, Seen
-from tendon_ros.identify.worths import worths
 
 FloatArray = NDArray[np.float64]
 Report = Callable[[str, float], None]

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.worth import open_question
-from tendon_ros.identify.afar import afar, aside, shifted
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
+from tendon_ros.identify.multistart import afar, aside, shifted
 from tendon_ros.identify.residuals import FEW
 from tendon_ros.identify.screening import Screen
 

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.form import form_parts, form_power, own_power, summed
 from tendon_ros.diagnose.imitable import imitable
 from tendon_ros.diagnose.outstanding import stands_out_in_time
-from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit, Problem

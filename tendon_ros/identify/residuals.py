@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
-from tendon_ros.identify.hearing import neighbours, unshared
+from tendon_ros.identify.noise_estimate import neighbours, unshared
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.step_size import fineness, ROUGHER, STEPS
 from tendon_ros.identify.tolerance import Tolerance

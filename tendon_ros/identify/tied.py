@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
-from tendon_ros.identify.afar import FAR, kinds_of, placed
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Problem
+from tendon_ros.identify.multistart import FAR, kinds_of, placed
 
 FloatArray = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ import pytest
 
 from tendon_ros.diagnose.alike import leaning
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.identify.afar import kinds_of
 from tendon_ros.identify.candidate import everyone
 from tendon_ros.identify.driving import as_recorded
+from tendon_ros.identify.multistart import kinds_of
 from tendon_ros.model.instrument import Curve
 from tendon_ros.model.instrument_file import load_instrument
 

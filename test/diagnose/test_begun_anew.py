@@ -2,7 +2,7 @@
 
 import pytest
 
-from tendon_ros.diagnose import looks
+from tendon_ros.diagnose import search_passes
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
@@ -53,8 +53,8 @@ def test_a_push_that_leaves_much_is_done_without(slipped, monkeypatch, first, se
             fits = [self.problem.fitted(one) for one in (self.problem.begun, model)]
             return Found(states=fits)
 
-    monkeypatch.setattr(looks, 'Search', Searching)
-    _, found = looks.Looks(
+    monkeypatch.setattr(search_passes, 'Search', Searching)
+    _, found = search_passes.Looks(
         ready, candidates, 1, lambda what, _done: said.append(what), None, Patience(600.0)
     ).taken()
     assert [(c.effect, c.place) for c in found.final.model.causes] == [ends[:2]]

@@ -8,7 +8,7 @@ import pytest
 from tendon_ros.diagnose import session
 from tendon_ros.diagnose.belief import _happening, _open, belief
 from tendon_ros.diagnose.bent import spent
-from tendon_ros.diagnose.company import _grown, companies, MAKES_UP, rubbing
+from tendon_ros.diagnose.compensating import _grown, companies, MAKES_UP, rubbing
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside, stays
 from tendon_ros.diagnose.naming import NAMED

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose import creeping, looks
+from tendon_ros.diagnose import creeping, search_passes
 from tendon_ros.diagnose.creeping import beside_chance, left_to_chance
 from tendon_ros.diagnose.form import creep_profile, form_profile
 from tendon_ros.diagnose.found import Found
@@ -114,8 +114,8 @@ def test_much_that_stays_where_friction_holds_asks_for_another_look(
             left = np.where(held == there, off, 0.0)
             return Found(states=[start, replace(state, left=left)])
 
-    monkeypatch.setattr(looks, 'Search', Searching)
-    looks.Looks(
+    monkeypatch.setattr(search_passes, 'Search', Searching)
+    search_passes.Looks(
         holding, [RUBS], 1, lambda what, _done: said.append(what), None, Patience(600.0)
     ).taken()
     assert (SAID in said) is looks_again

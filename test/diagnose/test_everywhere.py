@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose import first, search
+from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.everywhere import (
     _unopposed,
     everywhere,
@@ -17,7 +18,6 @@ from tendon_ros.diagnose.everywhere import (
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.diagnose.undoing import undoing
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.explanation import Model
 from tendon_ros.model.instrument_file import load_instrument

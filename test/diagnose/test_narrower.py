@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from tendon_ros.diagnose.begun import Begun
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.warm_start import Begun
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.model.effect_use import EffectUse
 from tendon_ros.model.instrument_file import load_instrument

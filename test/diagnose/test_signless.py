@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.base.recording import Channel
 from tendon_ros.blind.case import made, Settings
-from tendon_ros.diagnose import looks
+from tendon_ros.diagnose import search_passes
 from tendon_ros.diagnose.asking import BELOW, lost, may_be_signless, signed
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import judged
@@ -142,9 +142,9 @@ def test_where_much_stays_the_search_begins_again_beside_the_lost_sign(
             fits = [self.problem.fitted(one) for one in (self.problem.begun, model)]
             return Found(states=fits)
 
-    monkeypatch.setattr(looks, 'Search', Searching)
+    monkeypatch.setattr(search_passes, 'Search', Searching)
     candidates = everyone(axis, sorted(run.channels))
-    _, found = looks.Looks(
+    _, found = search_passes.Looks(
         ready, candidates, 1, lambda what, _done: said.append(what), None, Patience(600.0)
     ).taken()
     assert SIGN in found.final.model.causes
@@ -170,11 +170,13 @@ def test_a_sign_that_nobody_needs_begins_no_search(axis, recorded, monkeypatch):
             start = self.problem.fitted(self.problem.begun)
             return Found(states=[start, self.problem.fitted(model, rounds=0)])
 
-    monkeypatch.setattr(looks, 'Search', Searching)
-    monkeypatch.setattr(looks, 'signless', lambda *_: [SIGN])
+    monkeypatch.setattr(search_passes, 'Search', Searching)
+    monkeypatch.setattr(search_passes, 'signless', lambda *_: [SIGN])
     found = Searching(ready.problem).run()
     assert beyond_laws(ready.problem, found.start, found.final)
-    looks.Looks(ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience()).taken()
+    search_passes.Looks(
+        ready, [SIGN], 1, lambda what, _done: said.append(what), None, Patience()
+    ).taken()
     assert 'looking again: a sensor may have lost its sign' not in said
 
 
@@ -213,8 +215,8 @@ def test_a_sign_is_asked_beside_what_was_found_without_it(axis, recorded, monkey
             # without its sign, guesses would go anywhere along with it
             return Found(states=[start, self.problem.fitted(model, rounds=0)])
 
-    monkeypatch.setattr(looks, 'Search', Searching)
-    _, found = looks.Looks(
+    monkeypatch.setattr(search_passes, 'Search', Searching)
+    _, found = search_passes.Looks(
         prepared([run], axis),
         everyone(axis, sorted(run.channels)),
         1,

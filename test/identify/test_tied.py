@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.everywhere import everywhere
-from tendon_ros.identify.afar import afar, kinds_of
 from tendon_ros.identify.candidate import Candidate, everyone
+from tendon_ros.identify.multistart import afar, kinds_of
 from tendon_ros.identify.tied import FITTED, RUBS, tied
 
 WITHOUT_SIGN = Candidate('sensor_rectified', 'speed_roller')

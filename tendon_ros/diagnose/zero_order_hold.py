@@ -1,5 +1,5 @@
 """
-Whether torques that come seldom hold until the next, where neither steps nor the file tell.
+Zero-order hold of torques that come seldom, tried where neither steps nor the file tell.
 
 A voltage fifty times a second moves by steps of a fiftieth of a second, however smooth it looks;
 a current that a controller sets a thousand times a second and a logger reads fifty times goes

@@ -9,12 +9,12 @@ import pytest
 
 from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose.belief import belief
+from tendon_ros.diagnose.cancelling import absorbed, conspiring, undoing, undone
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.judge import IDLE
 from tendon_ros.diagnose.naming import NAMED
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
-from tendon_ros.diagnose.undoing import absorbed, conspiring, undoing, undone
 from tendon_ros.diagnose.valleys import started
 from tendon_ros.identify.candidate import Candidate
 
@@ -104,7 +104,7 @@ def test_nothing_is_left_of_those_that_conspire(channels, rows):
 def test_what_happens_at_a_time_undoes_nothing_that_lasts(monkeypatch, second, which):
     causes = (Candidate('encoder_offset', 'encoder_L'), second)
     changes = [WAVE, 0.2 * OTHER - WAVE]
-    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    monkeypatch.setattr('tendon_ros.diagnose.cancelling.change', lambda _p, _s, k: changes[k])
     assert undoing(*made_up(causes)) == which
 
 
@@ -113,7 +113,7 @@ def test_what_a_guess_does_as_well_is_no_opposition(monkeypatch, guessed, which)
     # friction asks for more torque and a limit for less; the unknown torque constant does both
     causes = (Candidate('coulomb_friction', 'pulley_M'), Candidate('torque_bias', 'motor_M'))
     changes = [WAVE + 0.3 * OTHER, 0.1 * OTHER - WAVE]
-    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    monkeypatch.setattr('tendon_ros.diagnose.cancelling.change', lambda _p, _s, k: changes[k])
     problem, state = made_up(causes)
     problem.tolerances = (SimpleNamespace(guessed=guessed),)
     problem.prior = lambda _model: np.zeros(1)
@@ -125,7 +125,7 @@ def test_those_whose_rest_alone_is_opposed_do_not_undo_each_other(monkeypatch):
     # both are mostly what an unknown torque constant does as well
     causes = (Candidate('torque_saturation', 'motor_M'), Candidate('joint_spring', 'pulley_M'))
     changes = [WAVE + 0.2 * OTHER, WAVE - 0.2 * OTHER]
-    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    monkeypatch.setattr('tendon_ros.diagnose.cancelling.change', lambda _p, _s, k: changes[k])
     problem, state = made_up(causes)
     problem.tolerances = (SimpleNamespace(guessed=True),)
     problem.prior = lambda _model: np.zeros(1)
@@ -139,7 +139,7 @@ def test_what_is_large_where_it_is_doubted_is_not_undone(monkeypatch, doubt, whi
     causes = (Candidate('coulomb_friction', 'pulley_1'), Candidate('coulomb_friction', 'pulley_3'))
     late = np.arange(len(WAVE)) >= 380
     changes = [WAVE, np.where(late, OTHER, 0.2 * OTHER - WAVE)]
-    monkeypatch.setattr('tendon_ros.diagnose.undoing.change', lambda _p, _s, k: changes[k])
+    monkeypatch.setattr('tendon_ros.diagnose.cancelling.change', lambda _p, _s, k: changes[k])
     problem, state = made_up(causes)
     problem.doubted = np.where(late, doubt**2, 1.0)
     assert undoing(problem, state) == which

@@ -1,5 +1,5 @@
 """
-A state without one of its causes, which tells whether that one is missed.
+Ablation: a state without one of its causes, which tells whether that one is missed.
 
 All else is fitted again from where it is. Where what a motor turns is only guessed, that is too
 far from where it has to go for one kind of cause: a torque constant three times as large is the

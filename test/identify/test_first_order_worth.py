@@ -7,7 +7,7 @@ import pytest
 
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.worths import growth, worths
+from tendon_ros.identify.first_order_worth import growth, worths
 from tendon_ros.model.instrument_file import load_instrument
 
 BIAS = Candidate('torque_bias', 'motor_body')

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from tendon_ros.diagnose.held import as_set
 from tendon_ros.diagnose.prepare import prepared
+from tendon_ros.diagnose.zero_order_hold import as_set
 from tendon_ros.identify.driving import as_recorded
 from tendon_ros.model.instrument_file import load_instrument
 from tendon_ros.model.session import simulate

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose.ablation import left_out, sets_the_unit
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.found import Found
-from tendon_ros.diagnose.left_out import left_out, sets_the_unit
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate

@@ -1,8 +1,11 @@
 """
-Causes that make up for one another: which of them is there cannot be said, that one is can be.
+Causes that compensate for each other: that one of them is there can be said, which one cannot.
 
 Each alone is hardly missed, since the others take over what it did; together they are missed
 much. Friction of a tool's spindle and of its jaw, between two torque sensors, are such.
+
+They do the same. Those of ``cancelling`` do the opposite of each other: each is missed badly when
+it alone is left out, and none of them is there.
 """
 
 from __future__ import annotations

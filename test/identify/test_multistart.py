@@ -5,8 +5,8 @@ import pytest
 
 from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.identify.afar import afar, FAR, KEPT
 from tendon_ros.identify.candidate import Candidate
+from tendon_ros.identify.multistart import afar, FAR, KEPT
 
 WITHOUT_SIGN = Candidate('sensor_rectified', 'speed_roller')
 

@@ -1,5 +1,5 @@
 """
-The looks that a diagnosis takes at recordings: a search, and others where its end asks for them.
+Search passes, or looks at recordings: a search, and others where its end asks for them.
 
 What a search ends with says on what footing it should have stood: how channels weigh, which sensor
 has a sign, what is noise, how well the numbers of the file are known. Each rule here is one such
@@ -30,9 +30,9 @@ from tendon_ros.diagnose.worth import (
     hopeless,
     worthwhile,
 )
-from tendon_ros.identify.afar import swings
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.multistart import swings
 
 Report = Callable[[str, float], None]
 

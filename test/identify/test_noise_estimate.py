@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tendon_ros.identify.hearing import heard, neighbours, unshared
+from tendon_ros.identify.noise_estimate import heard, neighbours, unshared
 
 
 @pytest.mark.parametrize('period', [0.002, 0.008, 0.017, 0.02, 0.024])

@@ -1,5 +1,5 @@
 """
-Where fits of guessed numbers begin: from afar.
+Multistart: the places, near and far, from which fits of guessed numbers begin.
 
 Driven by torques, a model swings as its numbers say, and a fit from a guess far off ends in a
 valley nearby: with another period nothing fits at all. What a guess may be is therefore looked

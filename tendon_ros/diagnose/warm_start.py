@@ -1,5 +1,5 @@
 """
-Rivals that begin where a cause has brought everything else.
+Warm starts: rivals that begin where a cause has brought everything else.
 
 Screening looks for them where the rest stands without the cause, and may look in another valley.
 """

@@ -1,9 +1,12 @@
 """
-Causes that undo each other: together they imitate something that is none of them.
+Causes that cancel, or undo, each other: together they imitate something that is none of them.
 
 What unrelated causes do to the channels adds up like squares. Where a fit lacks the true cause, it
 makes one up from large effects of opposite sign whose small difference looks like it; each is then
 missed badly when it alone is left out, and none of them is there.
+
+They do the opposite of each other. Those of ``compensating`` do the same: each is hardly missed
+when it alone is left out, and one of them is there.
 
 What is made up is off somewhere by a part of the large effects. Two that happen to be opposed,
 such as a softer contact beside an encoder that makes the tip press harder, leave nothing.
