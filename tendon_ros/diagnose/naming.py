@@ -103,6 +103,7 @@ def judged(
     strain: Mapping[tuple[str, str], float],
     lone: Collection[str] = (),
     signed: Collection[Candidate] = (),
+    adrift: Collection[str] = (),
 ) -> tuple[Judged, ...]:
     """
     Return every candidate with its probability, and whether these data could have shown it.
@@ -115,6 +116,7 @@ def judged(
         (:func:`strained`).
     :param lone: places of bodies that nothing is linked with.
     :param signed: lost signs of sensors whose readings show it.
+    :param adrift: motors that torque drives: where they are is not known for long.
     :return: most probable first.
     """
     named = {(c.effect, c.place): c for c in causes}
@@ -145,6 +147,11 @@ def judged(
         elif candidate.effect in BETWEEN and candidate.place in lone:
             why = (
                 'it acts between bodies: describe what is behind it as a second one, coupled to it'
+            )
+        elif candidate.waves and candidate.place in adrift:
+            why = (
+                'the angle was not recorded, and that of the model drifts: record it, or import '
+                'the integral of a speed that has its sign as the position'
             )
         elif candidate in signed:
             why = 'its readings go below zero by more than noise'

@@ -54,7 +54,7 @@ from tendon_ros.diagnose.spread import known_words
 from tendon_ros.diagnose.unexplained import unexplained
 from tendon_ros.diagnose.zero_order_hold import as_set
 from tendon_ros.identify.candidate import everyone
-from tendon_ros.identify.driving import as_recorded, said_of_torque, with_encoders
+from tendon_ros.identify.driving import as_recorded, drives, said_of_torque, with_encoders
 from tendon_ros.identify.magnitude import magnitude_of
 from tendon_ros.model.instrument import Instrument
 
@@ -185,6 +185,7 @@ def diagnose(
             strained(heard.problem, final.model),
             alone(instrument),
             seen,
+            {f'motor_{d.motor}' for d in drives(instrument) if d.by_torque},
         ),
         unexplained=Unexplained(
             probability=beyond, where=places.unexplained, regime=places.unexplained_regime

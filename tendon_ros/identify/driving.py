@@ -124,5 +124,6 @@ def said_of_torque(instrument: Instrument) -> list[str]:
         return []
     return [
         f'the position of {listed(motors)} was not recorded: the model is driven with the torque '
-        'instead, and what it gets wrong adds up; record the position where there is an encoder'
+        'instead, and what it gets wrong adds up; record the position where there is an encoder, '
+        'or import the integral of a speed that has its sign as the position'
     ]

@@ -72,3 +72,16 @@ def test_a_push_is_not_told_from_others_by_its_own_name(measured_on):
     weighed = Weighed(push, equal=(again, HEAVY), signs=signs, chance=0.9, without=start)
     [cause] = causes_of(ready, start, final, [weighed])
     assert [(o.effect, o.place) for o in cause.indistinguishable] == [(HEAVY.effect, HEAVY.place)]
+
+
+def test_no_ripple_is_excluded_where_the_angle_drifts():
+    ripple = Candidate('torque_ripple', 'motor_body')
+    seen = [SimpleNamespace(candidate=c, seen=100.0, own=90.0) for c in (ripple, HEAVY)]
+    final = SimpleNamespace(model=SimpleNamespace(causes=[]))
+    found = SimpleNamespace(final=final, proposals=seen)
+    rows = judged(found, [], [], [ripple, HEAVY], {}, adrift=['motor_body'])
+    [said] = [row for row in rows if row.effect == 'torque_ripple']
+    assert not said.identifiable
+    assert said.why_not.startswith('the angle was not recorded, and that of the model drifts')
+    [other] = [row for row in rows if row.effect == 'inertia']
+    assert 'the angle' not in other.why_not
