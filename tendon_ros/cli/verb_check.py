@@ -82,7 +82,7 @@ def _print_modes(title: str, found: Iterable[Mode]) -> None:
     lines = []
     for mode in found:
         if mode.damping < 1.0 - 1e-9:
-            text = f'{mode.frequency:9.3f} Hz, damping {mode.damping:.3f} of critical'
+            text = f'{mode.frequency:9.3f} Hz, damping {mode.damping:z.3f} of critical'
         else:
             text = f'{1e3 / mode.rate:9.3f} ms to return to 1/e'
         lines.append(f'  {text}, most at pulley {mode.pulley}')

@@ -54,13 +54,12 @@ def modes(instrument: Instrument, held: Iterable[str] = ()) -> tuple[Mode, ...]:
     for root, shape in zip(roots, shapes.T, strict=True):
         if abs(root) <= nothing or root.imag < 0.0:
             continue
-        decay = 0.0 if abs(root.real) <= nothing else float(-root.real)
         most = free[int(np.argmax(np.abs(shape[:n])))]
         found.append(
             Mode(
                 frequency=float(abs(root)) / (2.0 * np.pi),
-                damping=decay / float(abs(root)),
-                rate=decay,
+                damping=float(-root.real / abs(root)),
+                rate=float(-root.real),
                 pulley=instrument.pulley_names[most],
             )
         )
