@@ -205,13 +205,12 @@ def _explanation(
     fitted: dict[tuple[str, str], dict[str, float]],
 ) -> Explanation:
     """Return an effect with the size that was fitted, or else one that is not the file's."""
-    from tendon_ros.effects import find
     from tendon_ros.identify.candidate import everyone
 
     channels = [s.channel for s in instrument.sensors]
     [candidate] = [c for c in everyone(instrument, channels) if (c.effect, c.place) == name]
-    values = {p.name: p.typical for p in candidate.parameters}
-    return candidate, {**find(name[0]).typical, **values, **fitted.get(name, {})}
+    typical = {p.name: p.typical for p in candidate.parameters}
+    return candidate, {**typical, **fitted.get(name, {})}
 
 
 def _read(path: Path) -> Diagnosis:

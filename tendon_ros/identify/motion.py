@@ -124,14 +124,13 @@ def reading_error(channel: Channel, sensor: Sensor) -> ReadingError:
     :return: in the unit of the channel; what readings scatter by in motion where that is more
         than the file says, and from the smallest step between readings where the file is silent.
     """
-    if not (sensor.resolution > 0.0 or sensor.noise > 0.0):
+    if sensor.error == 0.0:
         steps = np.abs(np.diff(channel.value))
         steps = steps[steps > 0.0]
         count = float(np.quantile(steps, 0.02)) if steps.size else 0.0
         return ReadingError(count / np.sqrt(12.0), 0.0, count)
-    known = sensor.error
     moves = sensor.kind == 'angle'
     told = scatter(channel, max(sensor.resolution, sensor.noise)) if moves else None
-    if told is None or told.usual <= NOISIER * known:
-        return ReadingError(known, 0.0, sensor.resolution)
-    return ReadingError(max(known, told.still), told.late, sensor.resolution)
+    if told is None or told.usual <= NOISIER * sensor.error:
+        return ReadingError(sensor.error, 0.0, sensor.resolution)
+    return ReadingError(max(sensor.error, told.still), told.late, sensor.resolution)

@@ -29,8 +29,8 @@ from tendon_ros.model.instrument import (
 MEASURED = 0.02
 DAMPING = 0.06  # dampings are never known as well
 REACH = 3.0  # deviations; what lies beyond is a cause
-#: shape that a guess of zero may become, one deviation [rad]
-SOME_ANGLE = 0.5
+#: angle [rad] or share that a shape guessed to be zero may become, one deviation
+SOME_SHAPE = 0.5
 #: damping that a guess of zero may become, one deviation [N m s/rad]
 SOME_DAMPING = 0.01
 #: [s] by which the damping of a cable, a coupling or a contact delays its force, if a guess of
@@ -202,8 +202,7 @@ def _of_effects(instrument: Instrument) -> Iterator[Tolerance]:
                 axis = Axis(name, unit, p.low, p.high, value, 0.5, log=True, spread=REACH)
             else:
                 about = 0.0 if p.shapes_only else p.neutral
-                # an angle that is guessed to be zero may turn as far as any
-                least = p.typical - about or SOME_ANGLE
+                least = p.typical - about or SOME_SHAPE
                 scale = max(0.5 * abs(value), abs(least))
                 axis = Axis(name, unit, p.low, p.high, value, scale, spread=10.0)
             yield Tolerance(use.effect, use.place, name, p.name, _within(axis, p), given=True)
