@@ -30,7 +30,9 @@ EVENTS = 2  # starts of one event: in all recordings, or in one of them
 BEGUN = 0.1  # part of a recording before an event, and after: else it has always been there
 FEWEST = 2  # ripples that can be compared
 WAVES = 400.0  # of a ripple over a turn that are looked for, more where counts are finer
-LEVELS = 5  # tried for the limit of a motor's torque
+#: times from one limit of a motor's torque that is tried to the next: where the limit cuts peaks
+#: only, one that is half as far again cuts none of them, or far too much
+LEVELS = 1.25
 #: times the preload at which a cable would begin to loosen
 LOOSE = (1.2, 0.9, 0.65)
 LASTS = 0.3  # part of a recording from which on what lasts is no event
@@ -179,7 +181,8 @@ class Starting:
         largest = 0.98 * float(torques.max())
         usual = float(np.quantile(torques, usual_part(instrument, motor)))
         least = min(max(usual, 0.1 * largest), 0.8 * largest)
-        return [values | {name: float(v)} for v in np.geomspace(largest, least, LEVELS)]
+        levels = 1 + math.ceil(math.log(largest / least) / math.log(LEVELS))
+        return [values | {name: float(v)} for v in np.geomspace(largest, least, levels)]
 
     def _slack(self, candidate: Candidate, values: dict[str, float]) -> list[dict[str, float]]:
         """Try preloads about the one at which the cable is slack where it is stretched least."""

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
@@ -43,6 +44,20 @@ def test_what_was_put_in_comes_first(bench, measured_on, effect, alike):
     own = next(p for p in ranked if (p.candidate.effect, p.candidate.place) == effect[:2])
     for name, value in effect[2].items():
         assert own.values[name] == pytest.approx(value, rel=0.3)
+
+
+def test_a_limit_that_cuts_only_peaks_is_proposed_for_most_of_what_it_does(
+    bench, sound_run, measured_on
+):
+    largest = np.abs(sound_run['actuator/pulley_L/effort'].value).max()
+    limit = ('torque_saturation', 'motor_L', {'limit': 0.85 * largest, 'knee': 0.05})
+    problem = prepared([measured_on(bench, limit)], bench).problem
+    state = problem.fitted(problem.empty)
+    candidate = Candidate(*limit[:2])
+    limited = problem.fitted(problem.empty.joined(candidate, limit[2]), rounds=0)
+    assert state.cost > 2.0 * limited.cost
+    best = Screen(problem, state).proposals(candidate)[0]
+    assert best.gain > 0.7 * (state.cost - limited.cost)
 
 
 def test_a_size_of_nothing_changes_nothing(bench, sound_run):
