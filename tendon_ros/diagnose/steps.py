@@ -33,8 +33,8 @@ BRIEF = 4  # and where so much is left that only one which explains most of it m
 CLEAR = 10.0
 #: part of what a fit would explain that first order is sure to see
 FIRST_ORDER_SEES = 0.4
-#: the same of the effect in question at other places
-KIN_SEEN = 0.1
+#: the same of the effect in question at other places, and of the proposals that come first
+KIN_SEEN, LEADERS = 0.1, 4
 #: part of the cost that one more parameter must save
 PARAMETER = 0.004
 
@@ -156,8 +156,9 @@ class Steps:
         """
         near = [
             p
-            for p in proposals
-            if p.gain > (KIN_SEEN if p.candidate.effect == kin else FIRST_ORDER_SEES) * needed
+            for rank, p in enumerate(proposals)
+            if p.gain > FIRST_ORDER_SEES * needed
+            or (p.gain > KIN_SEEN * needed and (p.candidate.effect == kin or rank < LEADERS))
         ]
         chosen = near[: BRIEF if brief else SHORTLIST] or list(proposals[:1])
         known = self.problem.slopes(state)

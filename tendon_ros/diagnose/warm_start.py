@@ -14,7 +14,7 @@ import numpy as np
 
 from tendon_ros.diagnose.found import Rival
 from tendon_ros.diagnose.parts import is_part, widened
-from tendon_ros.diagnose.rivals import alike, bared, close_ones, halfway
+from tendon_ros.diagnose.rivals import alike, bared, halfway
 from tendon_ros.diagnose.steps import best_of, Steps
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
@@ -146,7 +146,7 @@ class Begun:
         Return the fits of rivals that came halfway, which begin where the others now stand.
 
         A weight and a spring of a small angle do the same, but not beside others that have moved
-        to make up for the one before the other came.
+        to make up for the one before the other came. One that came near may still be held back.
 
         :param state: with the cause.
         :param cause: which one.
@@ -154,17 +154,14 @@ class Begun:
         :param rivals: fits of others in its place.
         :return: the fits.
         """
-        close = {r.candidate for r in close_ones(self._problem, state, without, rivals)}
-        far = [c for c in halfway(state, without, rivals) if c not in close][:BEGUN_ANEW]
+        near = halfway(state, without, rivals)[:BEGUN_ANEW]
         # guesses that have moved to do without one friction hide that another does as well
         if any(t.guessed for t in self._problem.tolerances):
-            far += [
-                c for c in self._steps.candidates if alike(c, cause) and c not in {*close, *far}
-            ]
-        rest = bared(self._problem, state, state.model.causes.index(cause)) if far else None
+            near += [c for c in self._steps.candidates if alike(c, cause) and c not in near]
+        rest = bared(self._problem, state, state.model.causes.index(cause)) if near else None
         if rest is None:
             return []
-        proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], far))
+        proposals = best_of(self._steps.screened(Screen(self._problem, rest), [cause], near))
         sized = self._steps.pool.map(lambda p: self._sized(rest.model, p), proposals)
         begun = [(p.candidate, values) for p, values in zip(proposals, sized, strict=True)]
         return self._instead(state, cause, begun)

@@ -17,6 +17,8 @@ from tendon_ros.diagnose.rivals import (
     relieved,
     sharpened,
 )
+from tendon_ros.diagnose.steps import Steps
+from tendon_ros.diagnose.warm_start import Begun
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Screen
@@ -130,6 +132,14 @@ def test_a_rival_is_asked_to_do_what_the_cause_does_beside_the_others(bench, mea
     spring = screen.corrected(best).values
     assert spring['stiffness'] == pytest.approx(state.model.values(1)['torque'], rel=0.1)
     assert spring['rest'] == pytest.approx(state.model.values(1)['phase'], abs=0.01)
+    # and so is one that has come near, for it may be held back where it is
+    steps = Steps(problem, [SPRING], 1, lambda *_: None)
+    without = problem.fitted(problem.empty.joined(DAMPED, {'damping': 0.6}))
+    near = state.cost + 0.01 * (without.cost - state.cost)
+    stays = Rival(SPRING, Fit(bare.model.joined(SPRING, spring), bare.left, bare.slope, near))
+    [again] = Begun(steps).beside_the_others(state, WEIGHT, without, [stays])
+    assert again.candidate == SPRING
+    assert again.fit.cost < near
 
 
 def test_other_dry_frictions_of_one_pulley_are_alike_and_what_leads_it_back():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import best_of, BRIEF, Steps
+from tendon_ros.diagnose.steps import best_of, BRIEF, LEADERS, Steps
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.screening import Screen
 
@@ -54,6 +54,19 @@ def test_a_brief_look_fits_few_and_the_right_one_among_them(soft, bench):
     brief = steps.fitted(start, proposals, 0.0, brief=True)
     assert len(brief) <= BRIEF < len(steps.fitted(start, proposals, 0.0))
     assert SOFTER in [rival.candidate for rival in brief]
+
+
+def test_who_comes_first_is_fitted_though_first_order_sees_little_of_it(soft, bench):
+    problem, start, _ = soft
+    steps = Steps(problem, everyone(bench, [s.channel for s in bench.sensors]), 1, lambda *_: None)
+    found = best_of(steps.screened(Screen(problem, start)))[: LEADERS + 4]
+    seen = replace(found[-2], gain=0.5), replace(found[-1], gain=0.05)
+    little = [replace(p, gain=0.2) for p in found[:-2]]
+    fits = steps.fitted(start, [*little, *seen], 1.0)
+    asked = [*little[:LEADERS], seen[0]]
+    assert {rival.candidate for rival in fits} <= {p.candidate for p in asked}
+    assert len(fits) > 2
+    assert SOFTER in [rival.candidate for rival in fits]
 
 
 def test_a_limit_that_sinks_is_kept_for_those_beside_it(sound_problem):
