@@ -43,9 +43,9 @@ SPENT = 1.5
 WIDE = 0.98
 #: times its inertia that no body has by mistake
 OVER = 10.0
-#: times its angle that an encoder reads at most, and times its inertia that a body has by a
-#: diameter taken for a radius. By a tenth one is off where a lever is not what it should be; what
-#: is further off was taken for something else, a unit or a column
+#: times its angle that an encoder reads at most, and times less than its inertia that a body has
+#: by a diameter taken for a radius: more may have been mounted on it. By a tenth an encoder is off
+#: where a lever is not what it should be; further, it was taken for something else, a unit, say
 MISCOUNTED, MISTAKEN = 1.25, 4.0
 #: events nearer to each other than this are one [s]
 AT_ONCE = 0.5
@@ -201,7 +201,7 @@ def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
     if candidate.effect == 'encoder_gain':
         return not 1.0 / MISCOUNTED < values['gain'] / known['gain'] < MISCOUNTED
     if candidate.effect == 'inertia':
-        return not 1.0 / MISTAKEN < values['scale'] / known['scale'] < MISTAKEN
+        return not 1.0 / MISTAKEN < values['scale'] / known['scale'] < OVER
     return False
 
 

@@ -194,7 +194,8 @@ def test_a_factor_at_its_bound_is_no_cause(found_of):
         (Candidate('encoder_gain', 'encoder_M'), {'gain': 1.4}, True),
         (Candidate('encoder_gain', 'encoder_M'), {'gain': 1.2}, False),
         (Candidate('inertia', 'pulley_M'), {'scale': 0.2}, True),
-        (Candidate('inertia', 'pulley_M'), {'scale': 3.0}, False),
+        # something may have been mounted on it
+        (Candidate('inertia', 'pulley_M'), {'scale': 6.0}, False),
     ],
 )
 def test_what_is_further_off_than_any_is_has_to_explain_most(found_of, cause, values, far):
@@ -331,7 +332,7 @@ def test_a_push_that_stands_out_only_beside_what_is_not_believed_is_none(measure
     assert _happening(ready, found, doubted, (0,)) == doubted
 
 
-@pytest.mark.parametrize(('inertia', 'kept'), [(1.5, True), (8.0, False)])
+@pytest.mark.parametrize(('inertia', 'kept'), [(1.5, True), (12.0, False)])
 def test_what_is_further_off_than_any_is_stays_out_of_the_repaired_file(
     found_of, monkeypatch, inertia, kept
 ):
