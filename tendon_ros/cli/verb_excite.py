@@ -153,6 +153,9 @@ def _asked(
             for c in diagnosis.causes
             if (rivals := alone(diagnosis, c))
         ]
+        # what is only likely is no cause, and its report may ask about it all the same
+        asked_there = dict.fromkeys(e.separates for e in diagnosis.next_experiment)
+        sets = sets or [[_named(instrument, f'{e}@{at}') for e, at in one] for one in asked_there]
     if not sets:
         where = f'{path}: leaves nothing to tell apart' if path else 'nothing to tell apart'
         raise EffectError(f'{where}; name some with --separate EFFECT@PLACE EFFECT@PLACE')

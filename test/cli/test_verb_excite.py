@@ -12,6 +12,7 @@ from tendon_ros.diagnose.result import (
     Cause,
     Diagnosis,
     FittedParameter,
+    NextExperiment,
     Shrink,
     Unexplained,
 )  # fmt: skip
@@ -73,6 +74,29 @@ def test_from_a_diagnosis(tmp_path, capsys):
     assert 'an encoder on pulley 1' in out
     # the load cell was measured, so it is nothing to add
     assert 'load_cell/force' not in out
+
+
+def test_from_a_diagnosis_that_names_nothing_and_asks(tmp_path, capsys):
+    likely = (('pretension', 'cable_m1'), ('pretension', 'cable_12'))
+    diagnosis = Diagnosis(
+        verdict='unexplained',
+        gap=(),
+        where=(),
+        causes=(),
+        candidates=(),
+        unexplained=Unexplained(probability=0.9),
+        next_experiment=(NextExperiment(separates=likely, do='move'),),
+    )
+    path = tmp_path / 'diagnosis.json'
+    path.write_text(diagnosis.model_dump_json(by_alias=True), encoding='utf-8')
+    out = tmp_path / 'x.csv'
+    run('--from', path, '--out', out)
+    assert 'an encoder on pulley 1' in capsys.readouterr().out
+    assert out.exists()
+    silent = diagnosis.model_copy(update={'next_experiment': ()})
+    path.write_text(silent.model_dump_json(by_alias=True), encoding='utf-8')
+    with pytest.raises(EffectError, match='leaves nothing to tell apart'):
+        run('--from', path, '--out', tmp_path / 'y.csv')
 
 
 def test_other_causes_of_a_diagnosis_hold(tmp_path):
