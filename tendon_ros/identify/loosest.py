@@ -43,22 +43,31 @@ def loosest(instrument: Instrument, segments: Sequence[Segment]) -> float:
         for segment in segments
     ]
 
-    def doubted(tolerance: float) -> list[FloatArray]:
-        """Return all channels by what the right model may be off, by what that may change."""
+    def doubted(tolerance: float) -> list[list[FloatArray]]:
+        """Return channels by what the right model may be off, by what that may change."""
         rollouts = Rollouts(instrument, segments, tolerance=tolerance)
         return [
-            row / m.doubt / unnoticed
+            [
+                row / m.doubt / unnoticed
+                for segment, rows in zip(segments, rollouts.predicted(uses), strict=True)
+                for m, row in zip(segment.measured, rows, strict=True)
+            ]
             for uses, unnoticed in ((smooth, UNNOTICED), (sticking, STICKING))
-            for segment, rows in zip(segments, rollouts.predicted(uses), strict=True)
-            for m, row in zip(segment.measured, rows, strict=True)
         ]
 
-    rough = doubted(steps[0])
+    rough, enough = doubted(steps[0]), 0.0
     for tolerance, finer in pairwise(steps):
         fine = doubted(finer)
-        if not all(np.isfinite(row).all() for row in (*rough, *fine)):
+        if not all(np.isfinite(row).all() for rows in (*rough, *fine) for row in rows):
             return unit * TOLERANCE  # the file's own model diverges
-        if all(np.mean((a - b) ** 2) < 1.0 for a, b in zip(rough, fine, strict=True)):
-            return tolerance
+        as_smooth, as_sticking = (
+            all(np.mean((a - b) ** 2) < 1.0 for a, b in zip(one, other, strict=True))
+            for one, other in zip(rough, fine, strict=True)
+        )
+        if as_smooth:
+            enough = enough or tolerance
+            if as_sticking:
+                return tolerance
         rough = fine
-    return steps[-1]
+    # what shakes holds and lets go otherwise with each step, however fine: that is chance
+    return min(enough, unit * TOLERANCE) or steps[-1]

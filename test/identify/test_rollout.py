@@ -280,6 +280,39 @@ def test_rollouts_are_rougher_where_laws_leave_more_than_noise(bench, sound_run)
     assert 0.0 < np.sqrt(np.mean((rough.left(rough.empty) - left) ** 2)) < 0.5
 
 
+@pytest.mark.parametrize(
+    ('shakes', 'smooth', 'taken'),
+    [
+        (False, 1.0, 1),
+        # what holds otherwise with each step tells of chance: what is smooth decides
+        (True, 1.0, 2),
+        (True, 0.01, 4),
+        (False, 0.01, 4),
+    ],
+)
+def test_what_holds_otherwise_with_each_step_asks_for_no_finer_ones(
+    bench, sound_run, monkeypatch, shakes, smooth, taken
+):
+    """With steps of 4 urad what is smooth is off by a tenth of what shows, or by ten times."""
+    segments = prepared([sound_run], bench).whole.rollouts.segments
+
+    class Stepped:
+        def __init__(self, _instrument, segments, tolerance):
+            self._segments, self._tolerance = segments, tolerance
+
+        def predicted(self, uses):
+            seed = int(1e9 * self._tolerance)
+            chance = 0.3 * np.random.default_rng(seed).normal(size=len(segments[0].time))
+            off = 0.005 * self._tolerance / STEPS[2] / smooth
+            if any(uses) and shakes:
+                off = off + chance
+            return [np.array([m.doubt * off for m in s.measured]) for s in self._segments]
+
+    monkeypatch.setattr('tendon_ros.identify.loosest.Rollouts', Stepped)
+    found = loosest(bench, segments)
+    assert found == pytest.approx(STEPS[taken])
+
+
 def test_a_first_look_takes_a_few_of_many_recordings(bench, sound_run):
     runs = [replace(sound_run, name=f'run{n}') for n in range(FEW + 3)]
     problem = prepared(runs, bench).problem
