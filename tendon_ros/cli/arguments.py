@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tendon_ros.bags.reader import JointNames
+    from tendon_ros.base.recording import Recording
 
 
 def takes_bags(parser: argparse.ArgumentParser) -> None:
@@ -15,6 +20,43 @@ def takes_bags(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', nargs='+', metavar='BAG', help='folder, .mcap or .db3 file')
     takes_instrument(parser)
     parser.add_argument('--namespace', help='of the instrument, where a bag has several')
+
+
+def takes_stretches(parser: argparse.ArgumentParser) -> None:
+    """
+    Declare what is looked at of the bags.
+
+    :param parser: of a verb that takes bags.
+    """
+    parser.add_argument(
+        '--only',
+        action='append',
+        default=[],
+        metavar='[BAG=]FROM:TO',
+        help='look at these seconds of each bag, or of the one named, counted from its first '
+        'stamp; given twice, at two stretches, which leaves out what is between',
+    )
+
+
+def recordings_of(args: argparse.Namespace, joints: JointNames) -> list[Recording]:
+    """
+    Read the bags of :func:`takes_bags`, as far as :func:`takes_stretches` asks for them.
+
+    :param args: parsed arguments.
+    :param joints: names for messages without names.
+    :return: the recordings.
+    :raises RecordingError: on a bag that cannot be read, or a stretch that it has not.
+    """
+    from tendon_ros.bags.reader import read_recording
+    from tendon_ros.base.errors import RecordingError
+    from tendon_ros.base.stretch import Stretch, within
+
+    try:
+        stretches = [Stretch.parsed(text) for text in args.only]
+    except RecordingError as error:
+        raise RecordingError(f'--only {error}') from None
+    whole = [read_recording(bag, args.namespace, joints) for bag in args.bag]
+    return within(whole, stretches)
 
 
 def files_read(args: argparse.Namespace) -> list[Path]:

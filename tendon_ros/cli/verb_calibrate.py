@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from tendon_ros.cli.arguments import files_read, takes_bags
+from tendon_ros.cli.arguments import files_read, recordings_of, takes_bags, takes_stretches
 
 HELP = 'fit a diagnosed instrument file to another machine of its kind, and say what differs'
 
@@ -17,6 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     :param parser: of this verb.
     """
     takes_bags(parser)
+    takes_stretches(parser)
     parser.add_argument(
         '--out', type=Path, required=True, metavar='FILE.yaml', help='calibrated file to write'
     )
@@ -29,7 +30,6 @@ def run(args: argparse.Namespace) -> None:
 
     :param args: parsed arguments.
     """
-    from tendon_ros.bags.reader import read_recording
     from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import told
     from tendon_ros.diagnose.calibrate import calibrate
@@ -39,8 +39,7 @@ def run(args: argparse.Namespace) -> None:
 
     check_output(args.out, files_read(args), overwrite=args.overwrite)
     instrument = load_instrument(args.instrument)
-    joints = joint_names(instrument)
-    recordings = [read_recording(bag, args.namespace, joints) for bag in args.bag]
+    recordings = recordings_of(args, joint_names(instrument))
     with told() as report:
         found = calibrate(recordings, instrument, report)
     args.out.parent.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 import sys
 
-from tendon_ros.cli.arguments import files_read, takes_bags
+from tendon_ros.cli.arguments import files_read, recordings_of, takes_bags, takes_stretches
 
 HELP = 'say where the gap between recordings and model lies, and which effect causes it'
 
@@ -18,6 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     :param parser: of this verb.
     """
     takes_bags(parser)
+    takes_stretches(parser)
     parser.add_argument(
         '--out',
         required=True,
@@ -55,7 +56,6 @@ def run(args: argparse.Namespace) -> None:
     import math
     import os
 
-    from tendon_ros.bags.reader import read_recording
     from tendon_ros.base.errors import RecordingError
     from tendon_ros.base.outputs import check_output
     from tendon_ros.cli.progress import told
@@ -80,8 +80,7 @@ def run(args: argparse.Namespace) -> None:
         check_output(folder / name, read, overwrite=replaced)
     instrument = load_instrument(args.instrument)
     check_withheld(instrument, args.withhold)
-    joints = joint_names(instrument)
-    recordings = [read_recording(bag, args.namespace, joints) for bag in args.bag]
+    recordings = recordings_of(args, joint_names(instrument))
     folder.mkdir(parents=True, exist_ok=True)
     memory = Memory(folder / 'unfinished.json', recordings, instrument, args.withhold)
     with told() as report:

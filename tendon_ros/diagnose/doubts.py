@@ -203,7 +203,8 @@ def brief_words(ready: Prepared, final: Model) -> list[str]:
                 f'{worst.misfit / every:.0%} of what stays of {channel} lies between '
                 f'{worst.begin:.1f} and {worst.begin + 1.0:.1f} s of {worst.recording}: something '
                 'happened there once (lost counts, a knock, a late message), and what acts all '
-                'along is told the worse for it; leave that second out, or record again'
+                'along is told the worse for it; leave that second out (--only), or record '
+                'again'
             )
     return found
 

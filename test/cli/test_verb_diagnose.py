@@ -82,6 +82,22 @@ def test_writes_what_it_promises(bag, tmp_path, capsys):
     assert 'looking for' not in text
 
 
+def test_only_the_seconds_that_are_asked_for_are_looked_at(bag, tmp_path, monkeypatch):
+    seen = []
+
+    def looks(recordings, *_, **__):
+        seen.extend(recordings)
+        raise TendonError('seen')
+
+    monkeypatch.setattr('tendon_ros.diagnose.session.diagnose', looks)
+    words = [str(bag), *BODY, '--out', str(tmp_path / 'found'), '--only', ':2', '--only', '3:']
+    args = build_parser().parse_args(['diagnose', *words])
+    with pytest.raises(TendonError, match='seen'):
+        args.run(args)
+    assert [r.name for r in seen] == ['weight, 0 to 2 s', 'weight, 3 to 6 s']
+    assert all(r['actuator/pulley_body/effort'].time[0] == 0.0 for r in seen)
+
+
 def test_withheld_on_the_command_line(bag, tmp_path, capsys):
     words = ['--withhold', 'backlash', '--withhold', 'joint_spring@pulley_body']
     status, _, _ = said(capsys, bag, *BODY, '--out', tmp_path / 'x', *words)
@@ -101,6 +117,8 @@ def test_withheld_on_the_command_line(bag, tmp_path, capsys):
         (['BAG', *BODY, '--out', 'x', '--jobs', 'many'], 'many'),
         (['BAG', *BODY, '--out', 'x', '--minutes', '-1'], '--minutes -1'),
         (['BAG', *BODY, '--out', 'x', '--minutes', 'nan'], '--minutes nan'),
+        (['BAG', *BODY, '--out', 'x', '--only', '5'], "--only '5'"),
+        (['BAG', *BODY, '--out', 'x', '--only', '40:50'], 'lasts 6.0 s'),
         (['BAG', *BODY], '--out'),
         (['BAG', *BODY, '--out', 'a_file/x'], 'a_file'),
         ([*BODY, '--out', 'x'], 'BAG'),
