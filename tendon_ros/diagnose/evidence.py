@@ -12,6 +12,8 @@ FloatArray = NDArray[np.float64]
 
 #: times that a guess is off by, from which on one doubts the units of what was recorded
 ABSURD = 10.0
+#: times as much as the least that it may be, up to which a guess may be anything
+ANYTHING = 100.0
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,12 @@ class Moved:
     def ended(self) -> bool:
         """Whether it has moved to the end of its tolerance."""
         return self.off >= ENDED
+
+    @property
+    def untold(self) -> bool:
+        """Whether a guess may still be nearly anything."""
+        low, high = self.ci95
+        return self.guessed and self.unit == '1' and low * ANYTHING < high
 
     @property
     def absurd(self) -> bool:

@@ -90,11 +90,21 @@ def _part(name: str, texts: Sequence[str], more: int = 0) -> list[str]:
 
 def _numbers(moved: Sequence[Moved]) -> list[str]:
     texts = []
+    told = [one for one in moved if not one.untold]
     # who measured something wants to hear of it before who guessed
-    for one in sorted(moved, key=lambda number: number.guessed)[:_NUMBERS]:
+    for one in sorted(told, key=lambda number: number.guessed)[:_NUMBERS]:
         quantity, by, interval = moved_words(one)
         texts.append(f'{quantity} of {place_words(one.place)} {by} ({interval}){known_words(one)}')
-    return _part('file', texts, len(moved) - _NUMBERS)
+    lines = _part('file', texts, len(told) - _NUMBERS)
+    anything: dict[str, list[str]] = {}
+    for one in moved:
+        if one.untold:
+            anything.setdefault(moved_words(one)[0], []).append(place_words(one.place))
+    unknown = '; '.join(f'{what} of {", ".join(places)}' for what, places in anything.items())
+    if unknown:
+        said = [f'{unknown}: a guess of which these recordings tell nothing']
+        lines += _part('' if lines else 'file', said)
+    return lines
 
 
 def _where(diagnosis: Diagnosis) -> list[str]:

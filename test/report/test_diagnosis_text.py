@@ -235,6 +235,17 @@ def test_what_has_taken_up_a_gap_is_told(case):
     assert 'pretension of cable' not in text
 
 
+def test_guesses_that_may_still_be_anything_are_told_once(case):
+    diagnosis, evidence = case('three_causes')
+    inertia, preload, _ = evidence.moved
+    vague = replace(preload, guessed=True, ci95=(0.0, 50.0))
+    guesses = [replace(inertia, guessed=True), vague, replace(vague, place='cable_L3')]
+    text = summary(diagnosis, guesses)
+    assert 'file    inertia of pulley 3 × 1.021 (0.987 … 1.055), a guess' in text
+    assert 'pretension of cable 12, cable L3: a guess of which these recordings tell nothing' in text
+    assert 'file    pretension of cable 12' in summary(diagnosis, guesses[1:])
+
+
 def test_what_was_measured_and_has_moved_far_is_told_first(case):
     diagnosis, evidence = case('three_causes')
     inertia, preload, *_ = evidence.moved
