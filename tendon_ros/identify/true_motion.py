@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,10 +31,11 @@ def true_motion(
     """
     motion = segment.motion
     value, slope = motion.value.copy(), motion.slope.copy()
+    bend = np.zeros_like(value) if motion.bend is None else motion.bend.copy()
     for row, pulley in enumerate(segment.prescribed):
         for q, sensor in enumerate(instrument.sensors):
             if sensor.kind == 'angle' and sensor.of == pulley:
-                _mend(value[row], slope[row], numbers, q, motion.step)
+                _mend(value[row], (slope[row], bend[row]), numbers, q, motion.step)
                 break
     for row, pulley in enumerate(segment.pushed, start=len(segment.prescribed)):
         motors = [j for j, m in enumerate(instrument.motors) if m.pulley == pulley]
@@ -41,29 +44,30 @@ def true_motion(
             slope[row] *= part
         if not motors:
             q, lever = pressing(instrument, pulley)
-            _mend(value[row], slope[row], numbers, q, motion.step, lever)
+            _mend(value[row], (slope[row], bend[row]), numbers, q, motion.step, lever)
     if late != 0.0:
-        for row in (*value, *slope):
+        for row in (*value, *slope, *bend):
             row[:] = _earlier(row, -late / motion.step)
-    return Signals(value, slope, 0.0, motion.step)
+    return Signals(value, slope, 0.0, motion.step, bend)
 
 
 def _mend(
     value: FloatArray,
-    slope: FloatArray,
+    slopes: Sequence[FloatArray],
     numbers: Numbers,
     sensor: int,
     step: float,
     lever: float = 1.0,
 ) -> None:
-    """Turn what a sensor read, times a lever, into what was there; both arrays are changed."""
+    """Turn what a sensor read, times a lever, into what was there; all arrays are changed."""
     gain, offset = numbers['sensor_gain'][sensor], numbers['sensor_offset'][sensor]
     late = numbers['sensor_delay'][sensor]
     if late != 0.0:
-        value[:] = _earlier(value, late / step)
-        slope[:] = _earlier(slope, late / step)
+        for row in (value, *slopes):
+            row[:] = _earlier(row, late / step)
     value[:] = (value - lever * offset) / gain
-    slope[:] = slope / gain
+    for row in slopes:
+        row /= gain
 
 
 def _earlier(value: FloatArray, steps: float) -> FloatArray:

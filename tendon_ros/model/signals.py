@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline, make_interp_spline, PchipInterpolator
 
 FloatArray = NDArray[np.float64]
+
+DEGREE = 5  # of the spline that tells the second derivative of something smooth
 
 
 @dataclass(frozen=True)
@@ -17,20 +19,23 @@ class Signals:
     Cubic Hermite signals on one uniform grid, held before the first sample and after the last.
 
     ``value`` and ``slope``: shape (signals, samples), the slope per second; ``start`` and ``step``
-    [s] place the grid.
+    [s] place the grid. ``bend``, of the same shape: by how much the second derivative is more than
+    that of the cubic, straight between samples; nowhere where None.
     """
 
     value: FloatArray
     slope: FloatArray
     start: float
     step: float
+    bend: FloatArray | None = None
 
     @property
     def flat(self) -> FloatArray:
-        """The kernel's form: start, samples per second, samples, signals, values, slopes."""
+        """The kernel's form: start, samples a second, samples, signals, values, slopes, bends."""
         rows, samples = self.value.shape
         head = np.array([self.start, 1.0 / self.step, float(samples), float(rows)])
-        return np.concatenate([head, self.value.ravel(), self.slope.ravel()])
+        bend = np.zeros_like(self.value) if self.bend is None else self.bend
+        return np.concatenate([head, self.value.ravel(), self.slope.ravel(), bend.ravel()])
 
     @classmethod
     def none(cls) -> Signals:
@@ -82,6 +87,10 @@ class Signals:
         """
         Return twice differentiable signals through samples of something smooth: measured motion.
 
+        A cubic spline makes the second derivative of a wave of w radians a sample too large by
+        w^2 / 12: a tenth where a loop shakes with six samples a period. One of degree five makes
+        it too large by w^4 / 720 and is right to a quarter of a percent there.
+
         :param start: time of the first sample [s].
         :param step: between samples [s].
         :param values: shape (signals, samples).
@@ -89,5 +98,8 @@ class Signals:
         """
         table = np.atleast_2d(np.asarray(values, dtype=np.float64))
         grid = step * np.arange(table.shape[1])
-        slope = CubicSpline(grid, table, axis=1).derivative()(grid)
-        return cls(table, slope, start, step)
+        cubic = CubicSpline(grid, table, axis=1)
+        bend = None
+        if table.shape[1] > DEGREE:
+            bend = make_interp_spline(grid, table, k=DEGREE, axis=1)(grid, 2) - cubic(grid, 2)
+        return cls(table, cubic(grid, 1), start, step, bend)

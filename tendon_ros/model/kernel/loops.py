@@ -36,12 +36,13 @@ def limited(torque: float, limit: float, knee: float) -> tuple[float, float]:
 
 
 def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
-    """Return signal ``row`` at time t with its two derivatives: cubic Hermite, ends held."""
+    """Return signal ``row`` at time t with its two derivatives, as ``Signals`` says; ends held."""
     rows = int(s[3])
     samples = int(s[2])
     u = (t - s[0]) * s[1]
     at = 4 + row * samples
     to = at + rows * samples
+    more = to + rows * samples
     if u < 0.0:
         return s[at], 0.0, 0.0
     # at its last sample a motion has not stopped
@@ -58,7 +59,9 @@ def smooth(s: Floats, row: int, t: float) -> tuple[float, float, float]:
     return (
         a + u * (p + u * (b + u * e)),
         (p + u * (2.0 * b + 3.0 * u * e)) * s[1],
-        (2.0 * b + 6.0 * u * e) * s[1] * s[1],
+        (2.0 * b + 6.0 * u * e) * s[1] * s[1]
+        + (1.0 - u) * s[more + cell]
+        + u * s[more + cell + 1],
     )
 
 
