@@ -118,6 +118,22 @@ class Channel:
         """
         return np.interp(time, self.time, self.value)
 
+    def between(self, low: float, high: float) -> Channel:
+        """
+        Return what was read from one time to another; of a set-point also what held at first.
+
+        :param low: [s].
+        :param high: [s], with it.
+        :return: the channel with these samples, perhaps none.
+        """
+        first = int(np.searchsorted(self.time, low))
+        last = int(np.searchsorted(self.time, high, side='right'))
+        time, value = self.time[first:last], self.value[first:last]
+        held = self.name.startswith('setpoint/') and first > 0
+        if held and not (time.size and time[0] == low):
+            time, value = np.append(low, time), np.append(self.value[first - 1], value)
+        return replace(self, time=time, value=value)
+
 
 @dataclass(frozen=True)
 class Recording:

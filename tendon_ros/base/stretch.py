@@ -10,9 +10,6 @@ import math
 from tendon_ros.base.errors import listed, RecordingError
 from tendon_ros.base.recording import Channel, Recording
 
-NANOSECONDS = 1e9
-FEWEST = 2  # readings of a channel that have a spacing
-
 
 @dataclass(frozen=True)
 class Stretch:
@@ -80,23 +77,28 @@ def within(recordings: Sequence[Recording], stretches: Sequence[Stretch]) -> lis
 
 def _cut(recording: Recording, stretch: Stretch) -> Recording:
     """Return the part of a recording in a stretch; its time zero is where that begins."""
-    begins = recording.start + stretch.first
-    ends = recording.start + stretch.last
-    channels = []
-    for channel in recording.channels.values():
-        inside = (channel.time >= begins) & (channel.time < ends)
-        if inside.sum() >= FEWEST:
-            time, value = channel.time[inside] - begins, channel.value[inside]
-            channels.append(Channel(channel.name, time, value, channel.unit))
-    if not channels:
+    lasts = recording.end - recording.start
+    if stretch.first > lasts:
         raise RecordingError(
-            f'{recording.name}: lasts {recording.end - recording.start:.1f} s, and has nothing '
-            f'between {stretch.first:g} and {stretch.last:g} s'
+            f'{recording.name}: lasts {lasts:.1f} s, and has nothing between {stretch.first:g} '
+            f'and {stretch.last:g} s'
         )
-    last = min(stretch.last, recording.end - recording.start)
+    begins = recording.start + stretch.first
+    ends = math.nextafter(recording.start + stretch.last, begins)  # who ends there begins the next
+    channels: dict[str, Channel] = {}
+    silent: list[str] = []
+    for name, channel in recording.channels.items():
+        piece = channel.between(begins, ends)
+        if piece.time.size:
+            channels[name] = replace(piece, time=piece.time - begins)
+        else:
+            silent.append(name)
+    name = f'{recording.name}, {stretch.first:g} to {min(stretch.last, lasts):.4g} s'
+    warnings = [f'{name}: {one} left out: it says nothing in that time' for one in silent]
     return replace(
         recording,
-        name=f'{recording.name}, {stretch.first:g} to {last:.4g} s',
-        channels={c.name: c for c in channels},
-        epoch_ns=recording.epoch_ns + round(NANOSECONDS * begins),
+        name=name,
+        channels=channels,
+        epoch_ns=recording.epoch_ns + round(1e9 * begins),
+        warnings=(*recording.warnings, *warnings),
     )

@@ -30,8 +30,7 @@ def true_motion(
     :return: the signals to drive with, earlier by half a bin: the kernel's ticks are the middles.
     """
     motion = segment.motion
-    value, slope = motion.value.copy(), motion.slope.copy()
-    bend = np.zeros_like(value) if motion.bend is None else motion.bend.copy()
+    value, slope, bend = motion.value.copy(), motion.slope.copy(), motion.bends.copy()
     for row, pulley in enumerate(segment.prescribed):
         for q, sensor in enumerate(instrument.sensors):
             if sensor.kind == 'angle' and sensor.of == pulley:

@@ -34,8 +34,13 @@ class Signals:
         """The kernel's form: start, samples a second, samples, signals, values, slopes, bends."""
         rows, samples = self.value.shape
         head = np.array([self.start, 1.0 / self.step, float(samples), float(rows)])
-        bend = np.zeros_like(self.value) if self.bend is None else self.bend
-        return np.concatenate([head, self.value.ravel(), self.slope.ravel(), bend.ravel()])
+        rest = self.value, self.slope, self.bends
+        return np.concatenate([head, *(table.ravel() for table in rest)])
+
+    @property
+    def bends(self) -> FloatArray:
+        """The bend of all signals, shape (signals, samples)."""
+        return np.zeros_like(self.value) if self.bend is None else self.bend
 
     @classmethod
     def none(cls) -> Signals:

@@ -89,7 +89,7 @@ def _parts(
             continue
         channels = {}
         for name, channel in recording.channels.items():
-            piece = _between(channel, low, high)
+            piece = channel.between(low, high)
             if name not in names and not name.startswith('setpoint/'):
                 piece = _off(piece, bridged)
             if piece.value.size:
@@ -103,16 +103,6 @@ def _parts(
         name = f'{recording.name} [{low:.1f}-{high:.1f} s]' if cuts else recording.name
         parts.append(replace(recording, name=name, channels=channels))
     return parts, said
-
-
-def _between(channel: Channel, low: float, high: float) -> Channel:
-    """Return a channel from one time to another; a set-point with what held at the beginning."""
-    first = int(np.searchsorted(channel.time, low))
-    last = int(np.searchsorted(channel.time, high, side='right'))
-    time, value = channel.time[first:last], channel.value[first:last]
-    if channel.name.startswith('setpoint/') and first > 0 and not (time.size and time[0] == low):
-        time, value = np.append(low, time), np.append(channel.value[first - 1], value)
-    return replace(channel, time=time, value=value)
 
 
 def _off(channel: Channel, gaps: Sequence[Break]) -> Channel:
