@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import (
-    at_bound,
     far_fetched,
     is_constant,
     is_counted,
+    overweight,
     spent,
     vanishes,
 )
@@ -44,6 +44,7 @@ from tendon_ros.diagnose.judge import (
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.naming import NAMED, Weighed
 from tendon_ros.diagnose.outstanding import stands_out_in_time
+from tendon_ros.diagnose.plausible import is_at_end, is_far_off
 from tendon_ros.diagnose.prepare import Prepared
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem
@@ -55,8 +56,6 @@ FloatArray = NDArray[np.float64]
 ALIKE = 5
 #: part of a size by which a cause may change where what stands for something unknown goes
 STEADY = 0.2
-#: part of the gap that an encoder or a body explains at least which is further off than any is
-MOST = 0.5
 
 
 @dataclass(frozen=True)
@@ -127,7 +126,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
     local = giving_less(problem, final) | at_an_end(problem, final, found.without)
     undone = undoing(problem, final) | absorbed(problem, final, found.without) | local
     undone |= ahead.late if ahead else frozenset()
-    undone |= {k for k, cause in enumerate(causes) if at_bound(cause, final.model.values(k))}
+    undone |= {k for k in range(len(causes)) if is_at_end(problem, found, k)}
     rest = _without(ready, found, undone)
     left = stays(ready, rest)
     weighed = _all_weighed(ready, found, rest, left, undone)
@@ -164,6 +163,7 @@ def belief(ready: Prepared, found: Found) -> Belief:
         # nor is an encoder that reads five times what turns any good in a repaired file
         and not spent(cause, final.model.values(k))
         and not far_fetched(cause, final.model.values(k))
+        and not overweight(cause, final.model.values(k))
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
         and not takes_noise(problem, found, k)
@@ -291,11 +291,5 @@ def _open(problem: Problem, found: Found, k: int) -> bool:
         or spent(cause, model.values(k))
         or excuses(problem, model, k)
         or vanishes(problem, model, k)
-        or (far_fetched(cause, model.values(k)) and not _most(problem, found, k))
+        or is_far_off(problem, found, k)
     )
-
-
-def _most(problem: Problem, found: Found, k: int) -> bool:
-    """Return whether a cause explains most of the gap, as a wrong unit or column would."""
-    without, start = (problem.structured(f.left) for f in (found.without[k], found.start))
-    return without > MOST * start

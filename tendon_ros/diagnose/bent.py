@@ -171,22 +171,31 @@ def spent(candidate: Candidate, values: Mapping[str, float]) -> bool:
     :param values: of its parameters.
     :return: whether.
     """
-    return is_wide(candidate, values) or at_bound(candidate, values)
+    return any(ends(candidate, values) for ends in (is_wide, at_bound, overweight))
 
 
 def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
     Return whether a factor is nearly at its bound, or an angle or amplitude at it.
 
-    Nobody takes a body for another of ten times its inertia: a motor that lags is told like that.
+    :param candidate: an effect.
+    :param values: of its parameters.
+    :return: whether.
+    """
+    return any(_is_at_bound(p, values[p.name]) for p in candidate.parameters if not p.is_shape)
+
+
+def overweight(candidate: Candidate, values: Mapping[str, float]) -> bool:
+    """
+    Return whether a body would have another inertia than anybody takes it for.
+
+    A motor that lags is told like that.
 
     :param candidate: an effect.
     :param values: of its parameters.
     :return: whether.
     """
-    if candidate.effect == 'inertia' and not 1.0 / OVER < values['scale'] < OVER:
-        return True
-    return any(_is_at_bound(p, values[p.name]) for p in candidate.parameters if not p.is_shape)
+    return candidate.effect == 'inertia' and not 1.0 / OVER < values['scale'] < OVER
 
 
 def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
@@ -201,7 +210,7 @@ def far_fetched(candidate: Candidate, values: Mapping[str, float]) -> bool:
     if candidate.effect == 'encoder_gain':
         return not 1.0 / MISCOUNTED < values['gain'] / known['gain'] < MISCOUNTED
     if candidate.effect == 'inertia':
-        return not 1.0 / MISTAKEN < values['scale'] / known['scale'] < OVER
+        return values['scale'] / known['scale'] <= 1.0 / MISTAKEN
     return False
 
 

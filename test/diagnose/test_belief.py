@@ -12,6 +12,7 @@ from tendon_ros.diagnose.compensating import _grown, companies, MAKES_UP, rubbin
 from tendon_ros.diagnose.found import Found, Rival
 from tendon_ros.diagnose.judge import equals, IDLE, signs_beside, stays
 from tendon_ros.diagnose.naming import NAMED
+from tendon_ros.diagnose.plausible import is_at_end
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.identify.candidate import Candidate, everyone
@@ -206,6 +207,19 @@ def test_what_is_further_off_than_any_is_has_to_explain_most(found_of, cause, va
     assert not _open(problem, found, 0)  # without it, all of the gap is left
     found.without[0] = replace(found.start, left=0.3 * found.start.left)
     assert _open(problem, found, 0) is far
+
+
+def test_a_weight_of_many_times_the_file_is_believed_where_it_leaves_nothing(found_of):
+    """A motor that lags is told as a heavy body, too, but not to the noise."""
+    heavy = Candidate('inertia', 'pulley_M')
+    ready, found = found_of((heavy, {'scale': 1.2}))
+    problem = ready.problem
+    left = found.start.left
+    for scale, part, ends in ((17.0, 0.01, False), (17.0, 0.5, True), (0.05, 0.01, True)):
+        model = problem.empty.joined(heavy, {'scale': scale})
+        found.states[-1] = replace(found.final, model=model, left=part * left)
+        found.without[0] = replace(found.start, left=left)
+        assert is_at_end(problem, found, 0) is ends
 
 
 def test_others_are_judged_without_what_is_at_its_bound(found_of, monkeypatch):

@@ -12,6 +12,7 @@ from tendon_ros.diagnose.bent import (
     degenerate,
     is_constant,
     is_counted,
+    overweight,
     spent,
     vanishes,
 )
@@ -94,10 +95,6 @@ def test_a_motor_of_unknown_torque_may_give_way_all_along(measured_on):
         ('sensor_delay', 'load_cell', {'time': 0.05}, False),
         ('torque_gain', 'motor_M', {'gain': 0.021}, True),
         ('torque_gain', 'motor_M', {'gain': 1.2}, False),
-        # nobody takes a body for another of ten times its inertia
-        ('inertia', 'pulley_2', {'scale': 17.0}, True),
-        ('inertia', 'pulley_2', {'scale': 0.09}, True),
-        ('inertia', 'pulley_2', {'scale': 9.0}, False),
     ],
 )
 def test_no_size_at_its_bound_tells_what_is_there(effect, place, values, bound):
@@ -157,3 +154,10 @@ def test_events_at_once_are_one(effect, place, only, values, same):
     other = Candidate(effect, place, only), values
     assert at_once(push, other) is same
     assert at_once(other, push) is same
+
+
+@pytest.mark.parametrize(('scale', 'over'), [(17.0, True), (0.09, True), (9.0, False)])
+def test_nobody_takes_a_body_for_another_of_ten_times_its_inertia(scale, over):
+    body = Candidate('inertia', 'pulley_2')
+    assert overweight(body, {'scale': scale}) is over
+    assert spent(body, {'scale': scale}) is over
