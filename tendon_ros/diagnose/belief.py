@@ -19,7 +19,7 @@ from tendon_ros.diagnose.bent import (
     far_fetched,
     is_constant,
     is_counted,
-    overweight,
+    is_wide,
     spent,
     vanishes,
 )
@@ -163,7 +163,6 @@ def belief(ready: Prepared, found: Found) -> Belief:
         # nor is an encoder that reads five times what turns any good in a repaired file
         and not spent(cause, final.model.values(k))
         and not far_fetched(cause, final.model.values(k))
-        and not overweight(cause, final.model.values(k))
         and not spoils(ready, found, found.without[k])
         # who is fitted next to what only takes noise comes out too small
         and not takes_noise(problem, found, k)
@@ -288,7 +287,7 @@ def _open(problem: Problem, found: Found, k: int) -> bool:
     cause = model.causes[k]
     return (
         cause in found.unmet
-        or spent(cause, model.values(k))
+        or is_wide(cause, model.values(k))
         or excuses(problem, model, k)
         or vanishes(problem, model, k)
         or is_far_off(problem, found, k)

@@ -220,6 +220,8 @@ def test_a_weight_of_many_times_the_file_is_believed_where_it_leaves_nothing(fou
         found.states[-1] = replace(found.final, model=model, left=part * left)
         found.without[0] = replace(found.start, left=left)
         assert is_at_end(problem, found, 0) is ends
+        if not ends:
+            assert not _open(problem, found, 0)
 
 
 def test_others_are_judged_without_what_is_at_its_bound(found_of, monkeypatch):
