@@ -187,9 +187,9 @@ def at_bound(candidate: Candidate, values: Mapping[str, float]) -> bool:
 
 def overweight(candidate: Candidate, values: Mapping[str, float]) -> bool:
     """
-    Return whether a body would have another inertia than anybody takes it for.
+    Return whether a body would have ten times its inertia or more, or a tenth or less.
 
-    A motor that lags is told like that.
+    Nobody takes a body for another of that much: a motor that lags is told like that.
 
     :param candidate: an effect.
     :param values: of its parameters.

@@ -14,8 +14,8 @@ from tendon_ros.identify.fit import Problem
 
 #: part of the gap that an encoder or a body explains at least which is further off than any is
 MOST = 0.5
-#: part of what is there without a weight that stays with it at most, if it is ten times what the
-#: file says: what only stands in for a lag leaves more
+#: part of the structure without a body's inertia that stays with it at most, where it is ten times
+#: what the file says: what only stands in for something else does not take all of it
 CLEARED = 0.05
 
 
@@ -37,7 +37,7 @@ def is_far_off(problem: Problem, found: Found, k: int) -> bool:
 
 def is_at_end(problem: Problem, found: Found, k: int) -> bool:
     """
-    Return whether a cause is at its bound, or a body of ten times its weight that leaves a rest.
+    Return whether a cause is at its bound, or an inertia of ten times the file's leaves a rest.
 
     :param problem: the data.
     :param found: what the search has found.
