@@ -13,6 +13,7 @@ from tendon_ros.diagnose.bent import degenerate
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
@@ -33,7 +34,7 @@ from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.first_order_worth import worths
-from tendon_ros.identify.fit import Fit
+from tendon_ros.identify.fit import Fit, Problem
 from tendon_ros.identify.multistart import swings
 from tendon_ros.identify.screening import Screen, Seen
 
@@ -48,9 +49,10 @@ class Challenge:
 
     :param steps: of the search.
     :param seen: signatures beside an earlier state, which tell whom to look at more closely.
+    :param held: blocks that no fit sees, where they judge who may take a place as well.
     """
 
-    def __init__(self, steps: Steps, seen: Seen) -> None:
+    def __init__(self, steps: Steps, seen: Seen, held: Problem | None = None) -> None:
         self._steps = steps
         self._problem = steps.problem
         self._begun = Begun(steps)
@@ -58,6 +60,7 @@ class Challenge:
         # whom to ask when a cause that has stood is asked again, since another one was replaced
         self._near: dict[Candidate, list[Candidate]] = {}
         self._seen = seen
+        self._held = held
 
     def of(self, found: Found, *, brief: bool = False) -> None:
         """
@@ -220,7 +223,9 @@ class Challenge:
         state = found.final
         kept = self._steps.pruned(found.start, better, state.model.causes)
         stays = set(kept.model.causes) - set(state.model.causes)
-        return kept if stays or as_good(self._problem, kept, state) else None
+        # where no law is quite right, who fits as well may foretell worse
+        worse = self._held is not None and foretells(self._held, kept.model, state.model)
+        return kept if not worse and (stays or as_good(self._problem, kept, state)) else None
 
     def _no_excuse(self, model: Model, state: Fit) -> bool:
         """Return whether nothing has become an excuse beside a rival that was none before."""

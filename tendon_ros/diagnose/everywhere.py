@@ -34,8 +34,9 @@ FOLLOWED = 3
 NOTHING = 0.01
 #: times the cost that one of several which undo each other may leave where all leave it
 LITTLE_MORE = 1.5
-#: rounds of the fit of all of it: from typical sizes the way is long
-FAR = 12
+#: rounds of the first fits of all of it, of which one goes on, and of that: from typical sizes the
+#: way is long, and threshold after threshold bends it
+FAR, END = 12, 60
 #: rounds of fits that tell what is missed, with derivatives as they are, and of those with less
 GLANCE, ROUNDS = 4, 8
 
@@ -90,18 +91,18 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     best = min(rough, key=lambda fit: fit.cost, default=None)
     if best is None:
         return None
-    best = rougher.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
-    while (single := _unopposed(steps, rougher, best)) is not None:
-        best = single
-    state = problem.fitted(best.model, rounds=ROUNDS, accuracy=1e-2)
+    # what goes before the fit has come to its end goes by chance
+    state = rougher.fitted(best.model, rounds=END, accuracy=1e-3)
+    while (single := _unopposed(steps, rougher, state)) is not None:
+        state = single
+    nothing = rougher.fitted(start.model, rounds=0)
     while math.isfinite(state.cost):
-        least = needed(problem, start, state)
-        smaller = _idle_dropped(problem, state, least)
+        smaller = _idle_dropped(rougher, state, needed(rougher, nothing, state))
         if smaller is None and len(state.model.causes) > most:
-            smaller = _least_dropped(steps, state)
+            smaller = _least_dropped(steps, rougher, state)
         if smaller is None:
-            return steps.settled(state.model)
-        state = problem.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
+            return steps.settled(problem.fitted(state.model, rounds=ROUNDS, accuracy=1e-2).model)
+        state = rougher.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
     return None
 
 
@@ -117,7 +118,7 @@ def without_idle(steps: Steps, state: Fit) -> Fit:
     """
     least = NOTHING * len(state.left)
     found = state
-    while (smaller := _least_dropped(steps, found)) is not None:
+    while (smaller := _least_dropped(steps, steps.problem, found)) is not None:
         if not smaller.cost < found.cost + least:
             break
         found = smaller
@@ -169,10 +170,10 @@ def _idle_dropped(problem: Problem, state: Fit, least: float) -> Fit | None:
     return None
 
 
-def _least_dropped(steps: Steps, state: Fit) -> Fit | None:
+def _least_dropped(steps: Steps, problem: Problem, state: Fit) -> Fit | None:
     """Return a state without the cause that is missed least."""
     each = range(len(state.model.causes))
-    trials = steps.pool.map(lambda k: _glanced(steps.problem, state, [k]), each)
+    trials = steps.pool.map(lambda k: _glanced(problem, state, [k]), each)
     return min(trials, key=lambda fit: fit.cost, default=None)
 
 

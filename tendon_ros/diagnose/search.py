@@ -70,7 +70,7 @@ class Search:
         self._steps = Steps(problem, candidates, jobs, report, patience)
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
-        self._challenge = Challenge(self._steps, self._seen)
+        self._challenge = Challenge(self._steps, self._seen, held if problem.by_misfit else None)
         self._memory = memory
         self._begun = begun
 
