@@ -47,6 +47,25 @@ def test_who_takes_a_place_meets_who_had_it_and_not_everybody(bench, measured_on
     assert FAR not in again
 
 
+@pytest.mark.parametrize(('elsewhere', 'stays'), [(COULOMB, COULOMB), (WRONG, WRONG)])
+def test_who_foretells_worse_takes_no_place(bench, measured_on, elsewhere, stays):
+    """What was held out has another friction than what is fitted: there it has the last word."""
+    sizes = {COULOMB: {'torque': 0.05}, WRONG: {'damping': 0.1}}
+
+    def rubbing(which):
+        run = measured_on(bench, (which.effect, which.place, sizes[which]))
+        return prepared([run], bench).problem
+
+    problem = rubbing(COULOMB)
+    found = Found()
+    wrong = problem.empty.joined(WRONG, sizes[WRONG])
+    found.states += [problem.fitted(problem.empty), problem.fitted(wrong)]
+    steps = Steps(problem, [COULOMB, WRONG], 1, lambda *_: None)
+    found.proposals = best_of(steps.screened(Screen(problem, found.start)))
+    Challenge(steps, {}, rubbing(elsewhere)).of(found)
+    assert found.final.model.causes == (stays,)
+
+
 def test_a_brief_challenge_finds_who_is_far_better_with_fewer_fits(bench, measured_on):
     run = measured_on(bench, ('coulomb_friction', 'pulley_3', {'torque': 0.05}))
     problem = prepared([run], bench).problem

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose import everywhere as thinning
 from tendon_ros.diagnose import first, search
 from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.everywhere import (
@@ -20,6 +21,7 @@ from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.explanation import Model
+from tendon_ros.identify.residuals import FEW
 from tendon_ros.model.instrument_file import load_instrument
 
 
@@ -52,6 +54,32 @@ def test_only_what_is_needed_stays(measured_on):
     fit = thinned_out(steps, problem.fitted(problem.empty), 8)
     assert [(c.effect, c.place) for c in fit.model.causes] == [friction[:2]]
     assert problem.structured(fit.left) < 0.1
+
+
+def test_of_many_recordings_a_few_tell_what_goes(measured_on, monkeypatch):
+    axis = load_instrument('driven_axis')
+    pulleys = tuple(replace(p, inertia=0.5 * p.inertia) for p in axis.pulleys)
+    friction = ('coulomb_friction', 'pulley_axis', {'torque': 0.05})
+    settings = (('duration', '3 s'), ('amplitude', '40 deg'))
+    heavy = replace(axis, pulleys=pulleys)
+    runs = [
+        measured_on(heavy, friction, settings=settings, seed=seed, name=f'run{seed}')
+        for seed in range(FEW + 2)
+    ]
+    problem = prepared(runs, axis).problem
+    steps = Steps(problem, everyone(axis, sorted(runs[0].channels)), 1, lambda *_: None)
+    looked = []
+    glanced = thinning._glanced
+
+    def noted(asked, *args):
+        looked.append(len(asked.rollouts.segments))
+        return glanced(asked, *args)
+
+    monkeypatch.setattr(thinning, '_glanced', noted)
+    fit = thinned_out(steps, problem.fitted(problem.empty), 8)
+    assert set(looked) == {FEW}
+    assert [(c.effect, c.place) for c in fit.model.causes] == [friction[:2]]
+    assert len(fit.left) == len(problem.left(fit.model))
 
 
 def test_what_is_worth_nothing_by_other_weights_goes(measured_on):
