@@ -10,9 +10,10 @@ from collections.abc import Sequence
 
 from tendon_ros.diagnose.ablation import rest_of, sets_the_unit
 from tendon_ros.diagnose.bent import degenerate
+from tendon_ros.diagnose.beyond import hopeless
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
-from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.found import best_of, Found, judged_cost, Rival
 from tendon_ros.diagnose.further import foretells
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
@@ -27,10 +28,9 @@ from tendon_ros.diagnose.rivals import (
     relieved,
     sharpened,
 )
-from tendon_ros.diagnose.steps import best_of, CLEAR, judged_cost, Steps
+from tendon_ros.diagnose.steps import CLEAR, Steps
 from tendon_ros.diagnose.valleys import nudged, waved
 from tendon_ros.diagnose.warm_start import Begun
-from tendon_ros.diagnose.worth import hopeless
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.first_order_worth import worths

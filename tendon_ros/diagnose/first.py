@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tendon_ros.diagnose.asking import lost, signless
+from tendon_ros.diagnose.beyond import hopeless, outweighed
 from tendon_ros.diagnose.everywhere import thinned_out
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.guesses import astray, better, far_off
 from tendon_ros.diagnose.rounds import MOST, Round
 from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.valleys import from_afar, SETTLED
-from tendon_ros.diagnose.worth import hopeless, outweighed
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen, Seen

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal
+
+#: part of the cost that one more parameter must save
+PARAMETER = 0.004
 
 
 @dataclass(frozen=True)
@@ -15,6 +19,29 @@ class Rival:
 
     candidate: Candidate
     fit: Fit
+
+
+def judged_cost(rival: Rival) -> float:
+    """
+    Return the cost of a fit, more where more parameters made it.
+
+    :param rival: the fit.
+    :return: squares in noise deviations.
+    """
+    return rival.fit.cost * (1.0 + PARAMETER * rival.candidate.price)
+
+
+def best_of[T: (Proposal, Rival)](tried: Sequence[T]) -> list[T]:
+    """
+    Return the best proposal, or the best fit, of each candidate.
+
+    :param tried: best first.
+    :return: best first.
+    """
+    best: dict[Candidate, T] = {}
+    for one in tried:
+        best.setdefault(one.candidate, one)
+    return list(best.values())
 
 
 @dataclass

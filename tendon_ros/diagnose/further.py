@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from tendon_ros.diagnose.bent import spent
 from tendon_ros.diagnose.cancelling import undoing
+from tendon_ros.diagnose.found import best_of
 from tendon_ros.diagnose.intervals import CLUSTER
-from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.diagnose.worth import LEAST
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model

@@ -11,10 +11,10 @@ import math
 
 from tendon_ros.diagnose.bodies import of_one_body
 from tendon_ros.diagnose.form import tie
-from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.found import best_of, Found, Rival
 from tendon_ros.diagnose.parsimony import as_good
 from tendon_ros.diagnose.rivals import CLOSE, CREEPING, sharpened
-from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model

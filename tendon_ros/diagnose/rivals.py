@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from tendon_ros.diagnose.form import tie
-from tendon_ros.diagnose.found import Found, Rival
-from tendon_ros.diagnose.steps import judged_cost, Steps
+from tendon_ros.diagnose.found import Found, judged_cost, Rival
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.first_order_worth import worths
 from tendon_ros.identify.fit import Fit, Problem, UNTIMED

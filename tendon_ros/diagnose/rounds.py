@@ -12,9 +12,9 @@ from dataclasses import replace
 
 from tendon_ros.diagnose.bent import at_once
 from tendon_ros.diagnose.excusing import without_excuses
-from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.found import best_of, Rival
 from tendon_ros.diagnose.guesses import better, far_off, under_way
-from tendon_ros.diagnose.steps import best_of, CORRECTED, Steps
+from tendon_ros.diagnose.steps import CORRECTED, Steps
 from tendon_ros.diagnose.worth import LEAST, stands_out, worthwhile
 from tendon_ros.identify.fit import Fit
 from tendon_ros.identify.screening import Proposal, Screen

@@ -13,23 +13,20 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from tendon_ros.diagnose.asking import asked_again
+from tendon_ros.diagnose.beyond import beyond_laws, hopeless
 from tendon_ros.diagnose.cancelling import undoing
 from tendon_ros.diagnose.challenge import Challenge
 from tendon_ros.diagnose.everywhere import without_idle
 from tendon_ros.diagnose.first import FirstRound
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import best_of, Found
 from tendon_ros.diagnose.further import further
 from tendon_ros.diagnose.guesses import far_off
 from tendon_ros.diagnose.memory import Memory
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.rounds import MANY, promising, Round
-from tendon_ros.diagnose.steps import best_of, Report, Steps
+from tendon_ros.diagnose.steps import Report, Steps
 from tendon_ros.diagnose.valleys import started
-from tendon_ros.diagnose.worth import (
-    beyond_laws,
-    hopeless,
-    open_question,
-)
+from tendon_ros.diagnose.worth import open_question
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.fit import Fit, Problem

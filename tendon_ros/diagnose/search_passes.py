@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tendon_ros.diagnose.asking import lost, signless
+from tendon_ros.diagnose.beyond import beyond_laws, hopeless
 from tendon_ros.diagnose.creeping import doubting, left_to_chance
 from tendon_ros.diagnose.enough import KEPT
 from tendon_ros.diagnose.found import Found
@@ -25,11 +26,7 @@ from tendon_ros.diagnose.unexplained import (
     surprising,
     unexplained,
 )
-from tendon_ros.diagnose.worth import (
-    beyond_laws,
-    hopeless,
-    worthwhile,
-)
+from tendon_ros.diagnose.worth import worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.multistart import swings

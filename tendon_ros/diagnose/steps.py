@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tendon_ros.diagnose.bent import at_once, biased, degenerate
 from tendon_ros.diagnose.clock import told_apart
 from tendon_ros.diagnose.excusing import excuses, needs_excuse, raised, without_excuses
-from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.found import judged_cost, Rival
 from tendon_ros.diagnose.parts import as_one, plain, simpler
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.worth import needed, worthwhile
@@ -35,31 +35,6 @@ CLEAR = 10.0
 FIRST_ORDER_SEES = 0.4
 #: the same of the effect in question at other places, and of the proposals that come first
 KIN_SEEN, LEADERS = 0.1, 4
-#: part of the cost that one more parameter must save
-PARAMETER = 0.004
-
-
-def judged_cost(rival: Rival) -> float:
-    """
-    Return the cost of a fit, more where more parameters made it.
-
-    :param rival: the fit.
-    :return: squares in noise deviations.
-    """
-    return rival.fit.cost * (1.0 + PARAMETER * rival.candidate.price)
-
-
-def best_of[T: (Proposal, Rival)](tried: Sequence[T]) -> list[T]:
-    """
-    Return the best proposal, or the best fit, of each candidate.
-
-    :param tried: best first.
-    :return: best first.
-    """
-    best: dict[Candidate, T] = {}
-    for one in tried:
-        best.setdefault(one.candidate, one)
-    return list(best.values())
 
 
 class Steps:

@@ -12,10 +12,10 @@ import math
 
 import numpy as np
 
-from tendon_ros.diagnose.found import Rival
+from tendon_ros.diagnose.found import best_of, Rival
 from tendon_ros.diagnose.parts import is_part, widened
 from tendon_ros.diagnose.rivals import alike, bared, halfway
-from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import Model

@@ -25,13 +25,6 @@ LEAST, LEAST_IN_ONE = 0.03, 0.12
 ATTEMPTS = 4.0
 #: part of what is left that a cause must explain which is smaller than the form of other laws
 TAKES = 0.65
-#: times the form of the laws, and part of the gap, that may be left for a search to go on after a
-#: challenge: machines leave much of their noise's power, but little of the gap
-HOPELESS, MOST_LEFT = 10.0, 0.15
-#: the same, for a machine of which guesses are found: there challenges only polish
-MACHINE = 3.0
-#: noise powers a sample that stay, from which on noise says nothing of how well channels are told
-DROWNED = 10.0
 #: times the noise's power that noise never has, shared by neighbours or not
 LOUD = 2.0
 #: part of what is left in one channel that it must explain else
@@ -204,57 +197,6 @@ def open_question(problem: Problem, state: Fit) -> bool:
     whole, in_one = problem.structures(state.left)
     loud = float(np.mean(state.left**2)) > LOUD
     return loud or whole > 0.5 * LEAST or in_one > 0.5 * LEAST_IN_ONE
-
-
-def hopeless(problem: Problem, start: Fit, state: Fit) -> bool:
-    """
-    Return whether so much is left that none of the laws can be what is behind it.
-
-    :param problem: the data.
-    :param start: without any cause.
-    :param state: with all that was found.
-    :return: whether further causes would only imitate it.
-    """
-    if problem.structured(state.left) < MOST_LEFT * problem.structured(start.left):
-        return False
-    return _beyond(problem, start, state) > HOPELESS
-
-
-def beyond_laws(problem: Problem, start: Fit, state: Fit) -> bool:
-    """
-    Return whether clearly more is left than the laws of what was found can be wrong by.
-
-    So it is with every machine, however much of its gap is explained.
-
-    :param problem: the data.
-    :param start: without any cause.
-    :param state: with all that was found.
-    :return: whether.
-    """
-    return _beyond(problem, start, state) > MACHINE
-
-
-def outweighed(problem: Problem, start: Fit, state: Fit) -> bool:
-    """
-    Return whether channels weigh by their noise alone where laws leave more than that.
-
-    Whether laws may be wrong by so much or not: beside ten times the noise it is no weight.
-
-    :param problem: the data.
-    :param start: without any cause.
-    :param state: with all that was found.
-    :return: whether they should weigh by what stays of them.
-    """
-    alone = len(problem.channels()) < 2
-    stays = problem.structured(state.left)
-    if alone or problem.by_misfit or stays < 1.0:
-        return False
-    return stays > DROWNED or beyond_laws(problem, start, state)
-
-
-def _beyond(problem: Problem, start: Fit, state: Fit) -> float:
-    """Return times what laws can be wrong by that is left."""
-    return problem.structured(state.left) / (LEAST + form_power(problem, start, state))
 
 
 def gains(problem: Problem, before: Fit, after: Fit) -> tuple[float, float]:

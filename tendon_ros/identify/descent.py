@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ FloatArray = NDArray[np.float64]
 
 #: tries of a step with derivatives as they were taken, and of each with those that follow
 TRIES = (6, 1, 1)
+BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
 #: part of what a step has to gain that it must promise
 PROMISED = 0.3
 
@@ -145,3 +147,22 @@ def unpressed(x: FloatArray, bounds: FloatArray, gradient: FloatArray) -> NDArra
         (x >= bounds[:, 1]) & (gradient < 0.0)
     )
     return ~held
+
+
+def computed(descent: Descent, x: FloatArray, own: int) -> Place:
+    """
+    Return a place at which the model can be computed.
+
+    Numbers of the file that have gone far beside a cause may leave a model that diverges without
+    it: they go back towards the file.
+
+    :param descent: of the model.
+    :param x: unknowns, those of the file last.
+    :param own: how many of them are not of the file.
+    :return: the place; the file's own numbers where nothing else can be computed, or that neither.
+    """
+    for part in BACK:
+        place = descent.at(np.concatenate([x[:own], part * x[own:]]))
+        if math.isfinite(place.cost):
+            break
+    return place

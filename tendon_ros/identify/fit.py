@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
-from tendon_ros.identify.descent import Descent, follow, Place, TRIES, unpressed
+from tendon_ros.identify.descent import computed, Descent, follow, Place, TRIES, unpressed
 from tendon_ros.identify.explanation import Model
 from tendon_ros.identify.slopes import Slopes
 
@@ -29,8 +29,7 @@ MOVES = 2
 #: on its axis: what a guess may move until its derivative has to follow; how often a rough fit
 #: takes such derivatives anew where it seems to end
 FAR, LOOKS = 0.3, 1
-BACK = (1.0, 0.5, 0.25, 0.0)  # parts of the way from the file from which a model is computed
-#: accuracy from which on they are; and of fits that are as careful but for when events were
+#: accuracy from which on fits are careful; and of those that look for no times of events
 CAREFUL, UNTIMED = 1e-3, 2e-3
 
 
@@ -174,7 +173,7 @@ class Problem(Slopes):
         descent = self._descent(model)
         x = self.pack(model)
         x[still] = 0.0
-        place = _computed(descent, np.clip(x, *self._bounds(model).T), own)
+        place = computed(descent, np.clip(x, *self._bounds(model).T), own)
         if not math.isfinite(place.cost):  # the model diverges: nothing to fit from here
             nothing = np.zeros((len(place.left), len(axes)))
             return Fit(self.unpack(model, place.x), place.left, nothing, math.inf)
@@ -286,17 +285,3 @@ def _moves(cause: Candidate, at: int) -> list[list[tuple[int, float]]]:
         *([(j, 1.0), (k, -1.0)] for j in begin for k in lasts),
         *([(k, 1.0)] for k in lasts),
     ]
-
-
-def _computed(descent: Descent, x: FloatArray, own: int) -> Place:
-    """
-    Return a place at which the model can be computed.
-
-    Numbers of the file that have gone far beside a cause may leave a model that diverges without
-    it: they go back towards the file.
-    """
-    for part in BACK:
-        place = descent.at(np.concatenate([x[:own], part * x[own:]]))
-        if math.isfinite(place.cost):
-            break
-    return place

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.explanation import bristles, Model
-from tendon_ros.identify.noise_estimate import neighbours, unshared
 from tendon_ros.identify.rollout import Rollouts
 from tendon_ros.identify.step_size import fineness, ROUGHER, STEPS
 from tendon_ros.identify.tolerance import Tolerance
@@ -24,7 +23,6 @@ from tendon_ros.model.instrument import EffectUse
 
 FloatArray = NDArray[np.float64]
 
-FLOOR = 0.95  # mean square of a channel, in noise deviations, that is its floor
 FEW = 5  # recordings that a first look takes of many
 SUDDEN = 0.08  # [s] about an event in which misfit hardly counts: no slip is as sudden as its law
 
@@ -286,49 +284,6 @@ class Residuals:
         for n, c, span in spans:
             name = self._segments[n].measured[c].sensor.channel
             found.setdefault(name, np.zeros(count, dtype=np.bool_))[span] = True
-        return found
-
-    def structured(self, left: FloatArray) -> float:
-        """
-        Return the power of what is left that is not noise: what neighbouring bins share.
-
-        :param left: what is left, shape (samples,).
-        :return: mean square in noise deviations, noise taken off.
-        """
-        return self.structures(left)[0]
-
-    def structures(self, left: FloatArray) -> tuple[float, float]:
-        """
-        Return the same over all samples, and in the channel that has most of it.
-
-        :param left: what is left, shape (samples,).
-        :return: mean squares in noise deviations, noise taken off.
-        """
-        power = self.structured_by_channel(left).values()
-        whole = sum(p for p, _ in power) / max(sum(count for _, count in power), 1)
-        return whole, max((p / count for p, count in power if count), default=0.0)
-
-    def structured_by_channel(self, left: FloatArray) -> dict[str, tuple[float, int]]:
-        """
-        Return the same of each channel, all recordings together.
-
-        :param left: what is left, shape (samples,).
-        :return: by channel a sum of squares in noise deviations, noise taken off, and of how many
-            samples.
-        """
-        found: dict[str, tuple[float, int]] = {}
-        for n, c, own in self.groups(left):
-            segment = self._segments[n]
-            apart = neighbours(segment.spacing, counted=bool(segment.prescribed))
-            if len(own) <= apart:
-                continue
-            noise = len(own) * unshared(own, apart)
-            # what keeps below noise that has a shape is no gap
-            measured = segment.measured[c]
-            shaped = measured.counted * float(np.mean((measured.noise / measured.doubt) ** 2))
-            beyond = float(own @ own) - max(noise, FLOOR * shaped * len(own))
-            power, count = found.get(measured.sensor.channel, (0.0, 0))
-            found[measured.sensor.channel] = power + max(0.0, beyond), count + len(own)
         return found
 
     def groups(self, vector: FloatArray) -> list[tuple[int, int, FloatArray]]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tendon_ros.identify.axis import Axis
 from tendon_ros.identify.explanation import BRISTLES, Model
-from tendon_ros.identify.residuals import Residuals
+from tendon_ros.identify.structure import Structure
 
 FloatArray = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 REMEMBERED = 0.4
 
 
-class Unknowns(Residuals):
+class Unknowns(Structure):
     """What a model leaves of the recordings, by the vector of its unknowns."""
 
     def pack(self, model: Model) -> FloatArray:

@@ -3,9 +3,9 @@
 import pytest
 
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.found import Found
+from tendon_ros.diagnose.found import best_of, Found
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.screening import Screen
 

@@ -7,10 +7,10 @@ import pytest
 
 from tendon_ros.diagnose import parsimony
 from tendon_ros.diagnose.challenge import Challenge
-from tendon_ros.diagnose.found import Found, Rival
+from tendon_ros.diagnose.found import best_of, Found, Rival
 from tendon_ros.diagnose.parsimony import as_good, criterion
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import best_of, Steps
+from tendon_ros.diagnose.steps import Steps
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.screening import Screen
 

@@ -9,13 +9,13 @@ from tendon_ros.base.recording import Channel
 from tendon_ros.blind.case import made, Settings
 from tendon_ros.diagnose import search_passes
 from tendon_ros.diagnose.asking import BELOW, lost, may_be_signless, signed
+from tendon_ros.diagnose.beyond import beyond_laws
 from tendon_ros.diagnose.found import Found
 from tendon_ros.diagnose.naming import judged
 from tendon_ros.diagnose.patience import Patience
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
 from tendon_ros.diagnose.session import diagnose
-from tendon_ros.diagnose.worth import beyond_laws
 from tendon_ros.effects import find
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.starting import Starting

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tendon_ros.diagnose.found import best_of
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.steps import best_of, BRIEF, LEADERS, Steps
+from tendon_ros.diagnose.steps import BRIEF, LEADERS, Steps
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.identify.screening import Screen
 

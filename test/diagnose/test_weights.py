@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tendon_ros.base.recording import Channel
-from tendon_ros.diagnose import worth
+from tendon_ros.diagnose import beyond
+from tendon_ros.diagnose.beyond import outweighed
 from tendon_ros.diagnose.prepare import prepared
 from tendon_ros.diagnose.search import Search
-from tendon_ros.diagnose.worth import outweighed
 from tendon_ros.identify.candidate import Candidate, everyone
 from tendon_ros.model.instrument_file import load_instrument
 
@@ -109,10 +109,10 @@ def test_one_channel_has_none_to_be_weighed_against(axis, two, recorded):
 @pytest.mark.parametrize(('times', 'drowned'), [(0.5, True), (2.0, False)])
 def test_noise_is_no_weight_where_much_more_stays(two, run, monkeypatch, times, drowned):
     """However wrong laws may be."""
-    monkeypatch.setattr(worth, 'MACHINE', np.inf)
+    monkeypatch.setattr(beyond, 'MACHINE', np.inf)
     problem = prepared([wavering(run)], two).problem
     start = problem.fitted(problem.empty)
     stays = problem.structured(start.left)
     assert stays > 1.0
-    monkeypatch.setattr(worth, 'DROWNED', times * stays)
+    monkeypatch.setattr(beyond, 'DROWNED', times * stays)
     assert outweighed(problem, start, start) is drowned

@@ -6,17 +6,10 @@ import numpy as np
 import pytest
 
 from tendon_ros.diagnose import worth
+from tendon_ros.diagnose.beyond import beyond_laws, hopeless
 from tendon_ros.diagnose.form import form_power, form_profile, tie
 from tendon_ros.diagnose.prepare import prepared
-from tendon_ros.diagnose.worth import (
-    beyond_laws,
-    gains,
-    hopeless,
-    moving,
-    open_question,
-    stands_out,
-    worthwhile,
-)
+from tendon_ros.diagnose.worth import gains, moving, open_question, stands_out, worthwhile
 from tendon_ros.identify.candidate import Candidate
 from tendon_ros.identify.sticking import sticking
 from tendon_ros.model.instrument import EffectUse
