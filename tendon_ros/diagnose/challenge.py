@@ -218,14 +218,19 @@ class Challenge:
         None where that one is none, and is missed: friction of a motor that stands for most of the
         time, for one, may fit better by what it merely holds.
         """
-        if better is None:
-            return None
         state = found.final
+        if better is None or self._foretells_worse(better, state):
+            return None
         kept = self._steps.pruned(found.start, better, state.model.causes)
         stays = set(kept.model.causes) - set(state.model.causes)
+        if not stays and not as_good(self._problem, kept, state):
+            return None
+        return None if self._foretells_worse(kept, state) else kept
+
+    def _foretells_worse(self, other: Fit, state: Fit) -> bool:
+        """Return whether a fit foretells what was held out worse, where that is asked."""
         # where no law is quite right, who fits as well may foretell worse
-        worse = self._held is not None and foretells(self._held, kept.model, state.model)
-        return kept if not worse and (stays or as_good(self._problem, kept, state)) else None
+        return self._held is not None and foretells(self._held, other.model, state.model)
 
     def _no_excuse(self, model: Model, state: Fit) -> bool:
         """Return whether nothing has become an excuse beside a rival that was none before."""
