@@ -34,9 +34,9 @@ FOLLOWED = 3
 NOTHING = 0.01
 #: times the cost that one of several which undo each other may leave where all leave it
 LITTLE_MORE = 1.5
-#: rounds of the first fits of all of it, of which one goes on, and of that: from typical sizes the
-#: way is long, and threshold after threshold bends it
-FAR, END = 12, 60
+#: rounds of the fit of all of it: from typical sizes the way is long. The best one goes on by as
+#: many, up to so many times, as long as it comes to leave less than such a part of what it left
+FAR, STAGES, GAINS = 12, 5, 0.9
 #: rounds of fits that tell what is missed, with derivatives as they are, and of those with less
 GLANCE, ROUNDS = 4, 8
 
@@ -91,8 +91,7 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     best = min(rough, key=lambda fit: fit.cost, default=None)
     if best is None:
         return None
-    # what goes before the fit has come to its end goes by chance
-    state = rougher.fitted(best.model, rounds=END, accuracy=1e-3)
+    state = _followed(rougher, best)
     while (single := _unopposed(steps, rougher, state)) is not None:
         state = single
     nothing = rougher.fitted(start.model, rounds=0)
@@ -104,6 +103,23 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
             return steps.settled(problem.fitted(state.model, rounds=ROUNDS, accuracy=1e-2).model)
         state = rougher.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
     return None
+
+
+def _followed(problem: Problem, state: Fit) -> Fit:
+    """
+    Follow the fit of all of it to about its end: what goes before goes by chance.
+
+    Threshold after threshold bends the way; each stage takes all derivatives anew.
+
+    :param problem: the data.
+    :param state: with all that is usual.
+    :return: the better fit.
+    """
+    for _ in range(STAGES):
+        before, state = state, problem.fitted(state.model, rounds=FAR, accuracy=1e-3)
+        if not state.cost < GAINS * before.cost:
+            break
+    return state
 
 
 def without_idle(steps: Steps, state: Fit) -> Fit:
