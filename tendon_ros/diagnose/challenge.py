@@ -14,7 +14,7 @@ from tendon_ros.diagnose.beyond import hopeless
 from tendon_ros.diagnose.excusing import excused
 from tendon_ros.diagnose.form import tie
 from tendon_ros.diagnose.found import best_of, Found, judged_cost, Rival
-from tendon_ros.diagnose.further import foretells
+from tendon_ros.diagnose.further import saved
 from tendon_ros.diagnose.logged import is_logged
 from tendon_ros.diagnose.one_body import divide, instead, merge
 from tendon_ros.diagnose.parsimony import as_good, pays
@@ -229,8 +229,11 @@ class Challenge:
 
     def _foretells_worse(self, other: Fit, state: Fit) -> bool:
         """Return whether a fit foretells what was held out worse, where that is asked."""
-        # where no law is quite right, who fits as well may foretell worse
-        return self._held is not None and foretells(self._held, other.model, state.model)
+        # where no law is quite right, who fits as well may foretell worse; several of these, each
+        # by no more than chance, are worse together
+        if self._held is None:
+            return False
+        return float(saved(self._held, other.model, state.model).sum()) > 0.0
 
     def _no_excuse(self, model: Model, state: Fit) -> bool:
         """Return whether nothing has become an excuse beside a rival that was none before."""
