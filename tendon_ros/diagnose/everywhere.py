@@ -100,9 +100,10 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
         if smaller is None and len(state.model.causes) > most:
             smaller = _least_dropped(steps, rougher, state)
         if smaller is None:
-            return steps.settled(problem.fitted(state.model, rounds=ROUNDS, accuracy=1e-2).model)
+            break
         state = rougher.fitted(smaller.model, rounds=ROUNDS, accuracy=1e-2)
-    return None
+    state = problem.fitted(state.model, rounds=ROUNDS, accuracy=1e-2)
+    return steps.settled(state.model) if math.isfinite(state.cost) else None
 
 
 def _followed(problem: Problem, state: Fit) -> Fit:
