@@ -91,7 +91,7 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     best = min(rough, key=lambda fit: fit.cost, default=None)
     if best is None:
         return None
-    state = _followed(rougher, best)
+    state = _to_its_end(rougher, best)
     while (single := _unopposed(steps, rougher, state)) is not None:
         state = single
     nothing = rougher.fitted(start.model, rounds=0)
@@ -106,7 +106,7 @@ def thinned_out(steps: Steps, start: Fit, most: int, known: Model | None = None)
     return steps.settled(state.model) if math.isfinite(state.cost) else None
 
 
-def _followed(problem: Problem, state: Fit) -> Fit:
+def _to_its_end(problem: Problem, state: Fit) -> Fit:
     """
     Follow the fit of all of it to about its end: what goes before goes by chance.
 

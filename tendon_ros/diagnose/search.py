@@ -48,7 +48,8 @@ class Search:
     :param memory: of the steps of an interrupted search.
     :param begun: what an earlier search found in the same recordings.
     :param patience: once it has run out, the search ends with what it has.
-    :param held: blocks that no fit sees: of a machine, they tell which causes more there are.
+    :param held: blocks that no fit sees: of a machine, they tell which causes more there are, and
+        who may take the place of one.
     """
 
     def __init__(
@@ -63,11 +64,12 @@ class Search:
         held: Problem | None = None,
     ) -> None:
         self.problem = problem
-        self._held = held
+        # what laws get wrong is of no concern where channels weigh by their noise
+        self._held = held if problem.by_misfit else None
         self._steps = Steps(problem, candidates, jobs, report, patience)
         # a first look from where nothing is known tells later whom to look at more closely
         self._seen: Seen = {}
-        self._challenge = Challenge(self._steps, self._seen, held if problem.by_misfit else None)
+        self._challenge = Challenge(self._steps, self._seen, self._held)
         self._memory = memory
         self._begun = begun
 
@@ -171,7 +173,7 @@ class Search:
 
     def _further(self, state: Fit) -> Fit | None:
         """Return a state with further causes of a machine; None where there are none."""
-        if self._held is None or not (self.problem.by_misfit and state.model.causes):
+        if self._held is None or not state.model.causes:
             return None
         self._steps.report('looking for causes that foretell what was held out', 0.45)
         grown = further(self._steps, state, self._held, FORETELL)
